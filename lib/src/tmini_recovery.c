@@ -47,7 +47,7 @@ void tmini_recovery_back_off(tmini_t *lidar, int result)
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
     const bool is_asking =
         tmini_recovery_is_mute(lidar) && result == TMINI_ERROR_TIMEOUT && max_ms > 0;
-    if (is_asking || recovery->wishes != BIT(TMINI_EVENT_STARTED)) {
+    if (recovery->wishes != BIT(TMINI_EVENT_STARTED) || is_asking) {
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
         return;
     }
@@ -98,14 +98,6 @@ bool tmini_recovery_is_step(const tmini_t *lidar, tmini_event_t operation)
     return (wishes_beside_ladder(lidar) & BIT(operation)) == 0;
 }
 
-/* To stop comes first, then the questions, then the ladder. */
-static tmini_event_t next_operation(const tmini_t *lidar, tmini_event_t ended)
-{
-    const tmini_event_t wished = tmini_recovery_first(wishes_beside_ladder(lidar));
-    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
-    return wished == TMINI_EVENT_NONE && is_to_scan ? next_attempt(lidar, ended) : wished;
-}
-
 static void note_step(tmini_t *lidar, tmini_event_t operation)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
@@ -118,18 +110,20 @@ static void note_step(tmini_t *lidar, tmini_event_t operation)
     }
 }
 
+/* To stop comes first, then the questions, then the ladder. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended)
 {
-    const tmini_event_t operation = next_operation(lidar, ended);
+    tmini_event_t operation = tmini_recovery_first(wishes_beside_ladder(lidar));
     uint8_t attempts = lidar->link.timing->max_attempts;
     if (operation == TMINI_EVENT_NONE) {
-        return;
-    }
-    if (lidar->is_listen_only) { /* The only wish is to scan. */
-        tmini_command_wait(lidar, TMINI_PHASE_LISTENING, TMINI_SPIN_UP_TIMEOUT_MS);
-        return;
-    }
-    if (tmini_recovery_is_step(lidar, operation)) {
+        if (!tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
+            return;
+        }
+        if (lidar->is_listen_only) {
+            tmini_command_wait(lidar, TMINI_PHASE_LISTENING, TMINI_SPIN_UP_TIMEOUT_MS);
+            return;
+        }
+        operation = next_attempt(lidar, ended);
         note_step(lidar, operation);
         if (!lidar->is_recovery_off && operation != TMINI_EVENT_REBOOTED) {
             attempts = 1; /* The ladder repeats it. */
