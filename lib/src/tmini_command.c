@@ -200,7 +200,6 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
 {
     tmini_command_t *const command = &lidar->command;
     const bool is_step = command->code != TMINI_COMMAND_GET_FREQUENCY;
-    const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (frequency_chz < PLAUSIBLE_CHZ_MIN || frequency_chz > PLAUSIBLE_CHZ_MAX) {
         tmini_command_forget_frequency(lidar);
         return TMINI_ERROR_REPLY;
@@ -212,8 +211,11 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
     if (!command->is_repeated) {
         command->asks = 0; /* A lidar that loses its power now gets the whole time again, once. */
     }
-    if (command->operation == TMINI_EVENT_REBOOTED ||
-        (!is_step && !may_be_late && tmini_command_has_frequency(lidar))) {
+    if (command->operation == TMINI_EVENT_REBOOTED) {
+        return TMINI_OK;
+    }
+    const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
+    if (!is_step && !may_be_late && tmini_command_has_frequency(lidar)) {
         return TMINI_OK;
     }
     enter(lidar, TMINI_PHASE_SETTLING, quiet_timeout_ms(lidar));
