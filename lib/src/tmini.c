@@ -35,7 +35,7 @@ typedef char events_fit_their_mask[TMINI_EVENT_MORE <= 16 ? 1 : -1];
 /* The greatest age of a scan: half the range of the clock. */
 #define AGE_MAX_MS (UINT32_MAX / 2)
 
-static bool is_set_up(const tmini_t *lidar)
+TMINI_INLINE bool is_set_up(const tmini_t *lidar)
 {
     return lidar != NULL && lidar->link.port != NULL;
 }
@@ -53,10 +53,10 @@ tmini_state_t tmini_state(const tmini_t *lidar)
     if (lidar == NULL) {
         return TMINI_STATE_UNKNOWN;
     }
-    if (tmini_command_is_scanning(lidar)) {
-        return TMINI_STATE_SCANNING;
-    }
     if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
+        if (tmini_command_is_scanning(lidar)) {
+            return TMINI_STATE_SCANNING;
+        }
         return lidar->recovery.is_lost ? TMINI_STATE_RECOVERING : TMINI_STATE_STARTING;
     }
     if (tmini_command_is_busy(lidar)) {
@@ -98,9 +98,10 @@ static void fail(tmini_t *lidar, int status)
     raise_event(lidar, TMINI_EVENT_COMMAND_FAILED);
 }
 
-/* Something has ended: raises `event`, or reports the error. */
-static void report(tmini_t *lidar, tmini_event_t event, int result)
+/* A wish has ended: raises its event, or reports the error. */
+TMINI_NOINLINE static void end_wish(tmini_t *lidar, tmini_event_t event, int result)
 {
+    tmini_recovery_forget_wish(lidar, event);
     if (result == TMINI_OK) {
         raise_event(lidar, event);
     } else {
@@ -186,20 +187,20 @@ static void end_frequency(tmini_t *lidar, int result)
     tmini_monitor_forget_wish(&lidar->monitor);
     tmini_recovery_note_frequency(lidar, result == TMINI_OK || !is_wanted);
     if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY) || (is_wanted && result == TMINI_OK)) {
-        report(lidar, TMINI_EVENT_FREQUENCY, result);
+        end_wish(lidar, TMINI_EVENT_FREQUENCY, result);
     } else if (result != TMINI_OK) {
         lidar->command_error = (int8_t)result;
     }
-    tmini_recovery_forget_wish(lidar, TMINI_EVENT_FREQUENCY);
 }
 
-/* A step of the ladder has ended, and no packet has come yet. A successful start does not come
- * here: it ends with the first packet. A frequency that could not be set is reported when scanning
- * begins; the start follows even then. */
-static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_silent)
+/* A step of the ladder has ended in this phase, and no packet has come yet. A successful start does
+ * not come here: it ends with the first packet. A frequency that could not be set is reported when
+ * scanning begins; the start follows even then. */
+static void climb(tmini_t *lidar, tmini_event_t operation, tmini_phase_t phase, int result)
 {
     bool goes_on = result == TMINI_OK;
     if (operation == TMINI_EVENT_FREQUENCY) {
+        const bool is_silent = phase == TMINI_PHASE_ASKING && result == TMINI_ERROR_TIMEOUT;
         end_frequency(lidar, result);
         goes_on = !is_silent || tmini_recovery_note_silence(lidar);
     }
@@ -213,19 +214,15 @@ static void climb(tmini_t *lidar, tmini_event_t operation, int result, bool is_s
 /* A stop or a question has ended. */
 static void end_command(tmini_t *lidar, tmini_event_t operation, int result)
 {
-    tmini_recovery_forget_wish(lidar, operation);
-    report(lidar, operation, result);
+    end_wish(lidar, operation, result);
     tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
 }
 
-/* Acts on the result of the current operation. */
+/* Acts on the result of the current operation, which is no longer under way. */
 static void take_result(tmini_t *lidar, int result)
 {
     const tmini_event_t operation = (tmini_event_t)lidar->command.operation;
-    const uint8_t phase = lidar->command.phase;
-    if (result == TMINI_UNDER_WAY) {
-        return;
-    }
+    const tmini_phase_t phase = (tmini_phase_t)lidar->command.phase;
     if (result == TMINI_SCANS) {
         begin_scanning(lidar);
         return;
@@ -234,18 +231,19 @@ static void take_result(tmini_t *lidar, int result)
     if (phase >= TMINI_PHASE_SCANNING) {
         lose(lidar);
     } else if (tmini_recovery_is_step(lidar, operation)) {
-        climb(lidar, operation, result,
-              phase == TMINI_PHASE_ASKING && result == TMINI_ERROR_TIMEOUT);
+        climb(lidar, operation, phase, result);
     } else {
         end_command(lidar, operation, result);
     }
 }
 
-/* Offers the first bytes to the port at once. If the port reports a failure, it is asked again when
- * time has passed; until then a poll has nothing to do. So a loop that polls until TMINI_EVENT_NONE
- * ends, even if it repeats each failed command. */
-static void send_first(tmini_t *lidar)
+/* The wishes have changed: begins the next operation, and offers its first bytes to the port at
+ * once. If the port reports a failure, it is asked again when time has passed; until then a poll
+ * has nothing to do. So a loop that polls until TMINI_EVENT_NONE ends, even if it repeats each
+ * failed command. */
+TMINI_NOINLINE static void begin(tmini_t *lidar)
 {
+    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
     const bool has_failed = tmini_command_poll(lidar) != TMINI_UNDER_WAY;
     lidar->idle_ms = has_failed && lidar->pending == 0 ? 1 : 0;
 }
@@ -254,22 +252,21 @@ static void send_first(tmini_t *lidar)
 static void act(tmini_t *lidar)
 {
     if (!tmini_command_is_busy(lidar)) {
-        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
-        send_first(lidar);
+        begin(lidar);
     }
 }
 
-/* Stops the lidar, whatever is in progress. With listen_only nothing was sent, so nothing is
- * stopped. */
+/* Stops the lidar, whatever is in progress, unless that is a stop. With listen_only nothing was
+ * sent, so nothing is stopped. */
 static void begin_stop(tmini_t *lidar)
 {
+    const bool is_stopping = tmini_recovery_wishes(lidar, TMINI_EVENT_STOPPED);
     tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
     if (lidar->is_listen_only) {
         tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-        end_command(lidar, TMINI_EVENT_STOPPED, TMINI_OK);
-    } else {
-        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
-        send_first(lidar);
+        end_wish(lidar, TMINI_EVENT_STOPPED, TMINI_OK);
+    } else if (!is_stopping) {
+        begin(lidar);
     }
 }
 
@@ -282,7 +279,7 @@ static tmini_status_t take_question(tmini_t *lidar, tmini_event_t event)
     if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     }
-    if (tmini_state(lidar) >= TMINI_STATE_STARTING) {
+    if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
         return TMINI_ERROR_STATE;
     }
     look(lidar);
@@ -305,7 +302,10 @@ TMINI_NOINLINE static void take_reply(tmini_t *lidar)
         return;
     }
     tmini_recovery_note_reply(lidar);
-    take_result(lidar, tmini_command_reply(lidar, content));
+    const int result = tmini_command_reply(lidar, content);
+    if (result != TMINI_UNDER_WAY) {
+        take_result(lidar, result);
+    }
 }
 
 /* Of a lost lidar, a point packet is no proof that it scans as it should: it may send no start
@@ -452,7 +452,7 @@ static bool give_up_candidate(tmini_t *lidar)
     return tmini_parser_abandon(&lidar->decoder.parser);
 }
 
-/* Handles frames until one raises an event or none is left. Returns false if that takes more work
+/* Handles frames until there is an event or none is left. Returns false if that takes more work
  * than one poll may do. */
 static bool receive(tmini_t *lidar)
 {
@@ -461,9 +461,8 @@ static bool receive(tmini_t *lidar)
     size_t effort = 0;
     if (decoder->builder.ended) { /* The packet that ended the scan is decoded again. */
         effort = FRAME_EFFORT + tmini_parser_frame(parser)->size;
-        effort = effort < TMINI_PARSER_EFFORT ? effort : TMINI_PARSER_EFFORT - 1;
     }
-    do {
+    while (lidar->pending == 0) {
         const tmini_frame_type_t type = tmini_decoder_next(&lidar->decoder, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
@@ -476,20 +475,27 @@ static bool receive(tmini_t *lidar)
         if (effort >= TMINI_PARSER_EFFORT) {
             return false;
         }
-    } while (lidar->pending == 0);
+    }
     return true;
 }
 
-/* Does what is due because time has passed or the line is quiet. */
-static void keep_time(tmini_t *lidar)
+/* Does what is due because time has passed or the line is quiet. True if it ends the current
+ * operation. */
+static bool go_on(tmini_t *lidar)
 {
     const int result = tmini_command_poll(lidar);
     if (result == TMINI_UNDER_WAY) {
-        return;
+        return false;
     }
     take_result(lidar, result);
-    if (lidar->pending == 0) {
-        take_result(lidar, tmini_command_poll(lidar)); /* What follows is sent at once. */
+    return true;
+}
+
+/* What follows an operation is sent at once. After a failure comes an event or a pause, so this
+ * ends. */
+static void keep_time(tmini_t *lidar)
+{
+    while (lidar->pending == 0 && go_on(lidar)) {
     }
 }
 
@@ -532,10 +538,8 @@ static bool has_news(const tmini_t *lidar)
 TMINI_NOINLINE static tmini_event_t work(tmini_t *lidar)
 {
     const uint8_t faults = lidar->monitor.faults;
-    const bool is_done = lidar->pending != 0 || receive(lidar);
-    if (lidar->pending == 0) {
-        keep_time(lidar);
-    }
+    const bool is_done = receive(lidar);
+    keep_time(lidar);
     if (lidar->monitor.faults != faults) {
         raise_event(lidar, TMINI_EVENT_FAULTS_CHANGED);
     }
@@ -605,12 +609,14 @@ static bool init_scans(tmini_builder_t *builder, const tmini_config_t *config)
                                               config->filter) == TMINI_OK);
 }
 
-/* Ring and decoder check their own parts of the configuration. */
+/* Ring, parser and builder check their own parts of the configuration. What else a decoder has is 0
+ * at first. */
 static bool init_modules(tmini_t *lidar, const tmini_config_t *config)
 {
     return tmini_ring_init(&lidar->ring, config->rx_buffer, config->rx_size, config->rx_dma) ==
                TMINI_OK &&
-           tmini_decoder_init(&lidar->decoder, &lidar->ring, config->max_samples) == TMINI_OK &&
+           tmini_parser_init(&lidar->decoder.parser, &lidar->ring, config->max_samples) ==
+               TMINI_OK &&
            init_scans(&lidar->decoder.builder, config);
 }
 
@@ -666,20 +672,13 @@ tmini_status_t tmini_stop(tmini_t *lidar)
         return TMINI_ERROR_ARGUMENT;
     }
     const unsigned stop = BIT(TMINI_EVENT_STOPPED);
-    const bool is_stopping = (lidar->recovery.wishes & stop) != 0;
-    const bool is_aborted =
-        tmini_state(lidar) <= TMINI_STATE_STARTING && (lidar->recovery.wishes & ~stop) != 0;
     look(lidar);
     drop_events(lidar, stop | BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_COMMAND_FAILED) |
                            BIT(TMINI_EVENT_PAUSED) | BIT(TMINI_EVENT_RECOVERED));
-    if (is_aborted) {
+    if (tmini_state(lidar) <= TMINI_STATE_STARTING && (lidar->recovery.wishes & ~stop) != 0) {
         fail(lidar, TMINI_ERROR_ABORTED);
     }
-    if (is_stopping) {
-        tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED); /* And nothing else. */
-    } else {
-        begin_stop(lidar);
-    }
+    begin_stop(lidar);
     return TMINI_OK;
 }
 
@@ -702,7 +701,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         }
         tmini_monitor_forget_frequency(&lidar->monitor);
     }
-    if (tmini_state(lidar) < TMINI_STATE_STARTING) {
+    if (!tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
         return take_question(lidar, TMINI_EVENT_FREQUENCY);
     }
     if (is_new) {

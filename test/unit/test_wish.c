@@ -62,12 +62,12 @@ static const row_t tales[] IN_FLASH = {
     ROW(without_a_pause_configured_a_lidar_that_does_not_answer_is_not_asked_again,
         "backoff:0 idle start 30( >0D +250 ) >65 +50 >60 +2000 !FAILED +60000"),
     ROW(a_port_that_always_fails_is_reported_at_growing_intervals,
-        "start >65 takes:-1 +50 !FAILED ?WRITE +500 !NONE !FAILED +1000 !NONE !FAILED +2000 !NONE "
+        "start >65 takes:-1 +50 !FAILED ?WRITE +500 !FAILED !NONE +1000 !FAILED !NONE +2000 "
         "!FAILED"),
     ROW(a_port_that_fails_after_the_lidar_was_asked_in_vain_is_no_endless_loop,
         "idle start 30( >0D +250 ) takes:-1 !FAILED ?WRITE 101( !NONE )"),
     ROW(a_lidar_that_has_never_answered_gets_no_reboot,
-        "start >65 takes:-1 +50 !FAILED +500 !NONE !FAILED +1000 !NONE !FAILED takes:2 +2000 >65 "
+        "start >65 takes:-1 +50 !FAILED +500 !FAILED !NONE +1000 !FAILED !NONE takes:2 +2000 >65 "
         "+50 30( >0D +250 ) >65 +50 >60 <S !STARTED"),
     ROW(a_question_about_the_frequency_that_the_start_cannot_answer_fails,
         "idle frequency >0D start +250 28( >0D +250 ) >0D +250 !FAILED ?TIMEOUT >65 +50 >60 <S "

@@ -49,7 +49,8 @@
 #endif
 
 /** @def TMINI_NOINLINE
- * For a function that must not share its registers, or its stack, with its caller. */
+ * For a function that must not share its registers, or its stack, with its caller, and for one
+ * whose copies in all callers would be larger than the calls. */
 #if defined(__GNUC__)
 #define TMINI_NOINLINE __attribute__((noinline))
 #else
