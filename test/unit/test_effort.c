@@ -136,6 +136,9 @@ static const row_t tales[] IN_FLASH = {
     /* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
     ROW(a_poll_ends_when_its_effort_is_exactly_used_up,
         "large 7( <P:32 ) !MORE packets:6 !NONE packets:7"),
+    /* A packet of 7 samples costs 106, and that of 13 bytes which ended the scan 57: 1541. */
+    ROW(the_packet_that_ended_a_scan_counts_when_it_is_decoded_again,
+        "large scans <P <S 30( <P:7 ) !SCAN !MORE packets:17 drain"),
     /* Ten packets of 4 samples cost 88 each, which leaves 656 for the garbage after them. */
     ROW(packets_and_the_garbage_after_them_share_a_polls_effort,
         "large 10( <P ) 16( <zeros:256 ) !MORE packets:10 skipped:656 drain"),

@@ -133,6 +133,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(without_a_wish_any_frequency_is_right, "scans turns:60:90"),
     ROW(another_wish_clears_the_fault,
         "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN set:600 !FAULTS faults:0"),
+    ROW(a_loss_clears_the_fault,
+        "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN +1000 !FAULTS !LOST faults:0"),
     ROW(the_same_wish_does_not_clear_it,
         "off scans-at-10 turns:16:60 <turn:60 !FAULTS !SCAN set:1000 faults:0x40"),
 };

@@ -97,6 +97,12 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_frequency_that_could_not_be_set_again_is_reported,
         "wish:700 idle start >0D <700 !FREQUENCY >60 <scan <S !STARTED turns:2:70 +1000 !LOST >65 "
         "+50 >0D <99 >65 +50 >60 <scan <S !FAILED !RECOVERED ?REPLY"),
+    ROW(a_frequency_that_could_not_be_set_is_reported_once,
+        "off wish:700 idle start >0D <99 >65 +50 >60 <scan <S !STARTED !FAILED +1000 !LOST <S "
+        "!RECOVERED"),
+    ROW(a_wish_that_could_not_be_set_after_a_loss_does_not_interrupt_the_scans_at_once,
+        "scans-at-10 set:900 +1000 !LOST >65 +50 >0D <99 >65 +50 >60 <scan <S !FAILED !RECOVERED "
+        "turns:8:100"),
     ROW(a_recovery_that_was_not_polled_is_not_told_after_a_stop,
         "wish:700 idle start >0D <700 !FREQUENCY >60 <scan <S !STARTED turns:2:70 +1000 !LOST >65 "
         "+50 >0D <99 >65 +50 >60 <scan <S !FAILED stop >65 +50 !STOPPED"),
