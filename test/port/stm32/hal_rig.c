@@ -3,11 +3,9 @@
 
 #include "hal_rig.h"
 
-#include <string.h>
-
 #include "unity.h"
 
-hal_rig_t hal_rig;
+tmini_stm32_hal_t port;
 uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE] __ALIGNED(32);
 
 static void wait(void)
@@ -15,40 +13,35 @@ static void wait(void)
     machine_pass(1000);
 }
 
-scanning_t port_program = {.port = &tmini_stm32_hal_port, .context = &hal_rig.port, .wait = wait};
+scanning_t port_program = {.port = &tmini_stm32_hal_port, .context = &port, .wait = wait};
 #ifdef STM32_MODEL_NO_DMA
 const unsigned port_way_count = 1;
 #else
 const unsigned port_way_count = 3;
 #endif
 
-/* ---------------------------------------------------------- handlers and callbacks of a project */
-
-static void usart_interrupt(void)
-{
-    HAL_UART_IRQHandler(&hal_rig.uart);
-}
+/* ---------------------------------------------------------------------- callbacks of a project */
 
 void HAL_UARTEx_RxEventCallback(UART_HandleTypeDef *huart, uint16_t Size)
 {
     (void)Size;
-    tmini_stm32_hal_rx_event(&hal_rig.port, huart);
+    tmini_stm32_hal_rx_event(&port, huart);
 }
 
 void HAL_UART_RxHalfCpltCallback(UART_HandleTypeDef *huart)
 {
-    tmini_stm32_hal_rx_half_complete(&hal_rig.port, huart);
+    tmini_stm32_hal_rx_half_complete(&port, huart);
 }
 
 void HAL_UART_RxCpltCallback(UART_HandleTypeDef *huart)
 {
-    tmini_stm32_hal_rx_complete(&hal_rig.port, huart);
+    tmini_stm32_hal_rx_complete(&port, huart);
 }
 
 void HAL_UART_ErrorCallback(UART_HandleTypeDef *huart)
 {
     const bool was_ready = huart->RxState == HAL_UART_STATE_READY;
-    tmini_stm32_hal_error(&hal_rig.port, huart);
+    tmini_stm32_hal_error(&port, huart);
     TEST_ASSERT_EQUAL(was_ready, huart->RxState == HAL_UART_STATE_READY); /* It starts nothing. */
 }
 
@@ -59,46 +52,11 @@ void __WFI(void)
 
 /* --------------------------------------------------------------------------------------- set-up */
 
-#ifdef HAL_DMA_MODULE_ENABLED
-
-static void dma_interrupt(void)
-{
-    HAL_DMA_IRQHandler(&hal_rig.dma);
-}
-
-static void open_dma(void)
-{
-    hal_rig.dma = (DMA_HandleTypeDef){
-        .Instance = &model.dma.channel, .Init.Mode = DMA_CIRCULAR, .Init.MemInc = DMA_MINC_ENABLE};
-#ifdef DMA_LINKEDLIST_CIRCULAR
-    hal_rig.dma.Mode = DMA_LINKEDLIST_CIRCULAR;
-    hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET] = DMA_CTR1_DINC;
-    hal_rig.list.Head = &hal_rig.node;
-    hal_rig.dma.LinkedListQueue = &hal_rig.list;
-#endif
-    hal_rig.uart.hdmarx = &hal_rig.dma;
-    irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
-}
-
-#else
-
-static void open_dma(void) {}
-
-#endif
-
 void rig_open(void)
 {
-    memset(&hal_rig, 0, sizeof hal_rig);
     model_reset();
-    irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
-    hal_rig.uart = (UART_HandleTypeDef){
-        .Instance = &model_usart,
-        .Init = {.BaudRate = 230400, .WordLength = UART_WORDLENGTH_8B, .Parity = UART_PARITY_NONE},
-        .gState = HAL_UART_STATE_READY,
-        .RxState = HAL_UART_STATE_READY,
-    };
-    open_dma();
-    (void)tmini_stm32_hal_init(&hal_rig.port, &hal_rig.uart);
+    MX_USART1_UART_Init();
+    (void)tmini_stm32_hal_init(&port, &huart1);
 }
 
 tmini_status_t rig_start(void)
@@ -106,11 +64,10 @@ tmini_status_t rig_start(void)
     if (rig_way == BY_BLOCKS) {
         model.cached = hal_rig_block;
         model.cached_size = sizeof hal_rig_block;
-        return tmini_stm32_hal_start_blocks(&hal_rig.port, &lidar, hal_rig_block,
-                                            sizeof hal_rig_block);
+        return tmini_stm32_hal_start_blocks(&port, &lidar, hal_rig_block, sizeof hal_rig_block);
     }
     model.cached = tmini_rx_buffer(&lidar, &model.cached_size);
-    return tmini_stm32_hal_start(&hal_rig.port, &lidar);
+    return tmini_stm32_hal_start(&port, &lidar);
 }
 
 void hal_rig_assert_refused(uint32_t *member, uint32_t value)
@@ -123,13 +80,13 @@ void hal_rig_assert_refused(uint32_t *member, uint32_t value)
 
 void port_stop(void)
 {
-    tmini_stm32_hal_stop(&hal_rig.port);
+    tmini_stm32_hal_stop(&port);
 }
 
 rig_counts_t rig_counts(void)
 {
     tmini_stm32_hal_counters_t c;
-    tmini_stm32_hal_counters(&hal_rig.port, &c);
+    tmini_stm32_hal_counters(&port, &c);
     return (rig_counts_t){0,      c.overruns, c.framing_errors, c.noise_errors,
                           c.laps, c.restarts, c.other_errors};
 }
@@ -154,7 +111,7 @@ void rig_break_reception(void)
 #ifdef HAL_DMA_MODULE_ENABLED
 
 ACT(ask_for_info, TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&lidar)))
-ACT(end_reception, hal_rig.uart.RxState = HAL_UART_STATE_READY)
+ACT(end_reception, huart1.RxState = HAL_UART_STATE_READY)
 ACT(pause_dma, model_usart.CR3 = 0)
 
 static void set_up_again(void)
@@ -164,26 +121,26 @@ static void set_up_again(void)
     end_reception();
 }
 
-ACT(abort_dma, TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hal_rig.dma)))
+ACT(abort_dma, TEST_ASSERT_EQUAL(HAL_OK, HAL_DMA_Abort(&hdma_usart1_rx)))
 
 static void suspend_dma(void)
 {
     model.dma.enabled = false;
-    hal_rig.dma.State = HAL_DMA_STATE_SUSPEND;
+    hdma_usart1_rx.State = HAL_DMA_STATE_SUSPEND;
 }
 
 ACT(fail_dma, model.dma.flags |= MODEL_DMA_TE)
 
 static void block_dma(void)
 {
-    hal_rig.dma.State = HAL_DMA_STATE_ABORT;
+    hdma_usart1_rx.State = HAL_DMA_STATE_ABORT;
     pause_dma();
     end_reception();
 }
 
-ACT(unblock_dma, hal_rig.dma.State = HAL_DMA_STATE_BUSY)
-ACT(report_event, tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart))
-ACT(report_half, tmini_stm32_hal_rx_half_complete(&hal_rig.port, &hal_rig.uart))
+ACT(unblock_dma, hdma_usart1_rx.State = HAL_DMA_STATE_BUSY)
+ACT(report_event, tmini_stm32_hal_rx_event(&port, &huart1))
+ACT(report_half, tmini_stm32_hal_rx_half_complete(&port, &huart1))
 
 #endif
 

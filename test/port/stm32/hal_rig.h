@@ -9,22 +9,11 @@
 #include "tmini_stm32_hal.h"
 
 #include "stm32_rig.h"
+#include "usart.h"
 
 #define HAL_RIG_BLOCK_SIZE 256u
 
-typedef struct {
-    UART_HandleTypeDef uart;
-#ifdef HAL_DMA_MODULE_ENABLED
-    DMA_HandleTypeDef dma;
-#endif
-#ifdef DMA_LINKEDLIST_CIRCULAR
-    DMA_NodeTypeDef node;
-    DMA_QListTypeDef list;
-#endif
-    tmini_stm32_hal_t port;
-} hal_rig_t;
-
-extern hal_rig_t hal_rig;
+extern tmini_stm32_hal_t port;
 extern uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE];
 
 /* With this value in this place, a start is refused. */

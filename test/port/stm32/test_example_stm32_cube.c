@@ -14,25 +14,13 @@
 #include "unity.h"
 
 GPIO_TypeDef stm32_model_gpiob;
-UART_HandleTypeDef huart1;
 
-static DMA_HandleTypeDef dma;
 static bool may_move;
 static uint32_t led_changes;
 static uint32_t errors_handled;
 static uint64_t day_ns;
 static uint32_t ms_past;
 static uint32_t calls_every_ms = 1;
-
-static void usart_interrupt(void)
-{
-    HAL_UART_IRQHandler(&huart1);
-}
-
-static void dma_interrupt(void)
-{
-    HAL_DMA_IRQHandler(&dma);
-}
 
 /* With this HAL, only for a reception without the idle line. */
 void HAL_UART_RxHalfCpltCallback(UART_HandleTypeDef *huart)
@@ -70,16 +58,7 @@ void setUp(void)
 {
     model_reset();
     model.tick_ns = day_ns += UINT64_C(1000000000000);
-    irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
-    irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
-    dma = (DMA_HandleTypeDef){.Init = {.Mode = DMA_CIRCULAR, .MemInc = DMA_MINC_ENABLE}};
-    huart1 = (UART_HandleTypeDef){
-        .Instance = &model_usart,
-        .Init = {.BaudRate = 230400},
-        .hdmarx = &dma,
-        .gState = HAL_UART_STATE_READY,
-        .RxState = HAL_UART_STATE_READY,
-    };
+    MX_USART1_UART_Init();
     errors_handled = 0;
 }
 
@@ -180,10 +159,10 @@ void test_a_main_loop_of_30_ms_loses_nothing(void)
 
 void test_a_uart_not_set_up_as_in_the_readme_calls_the_error_handler(void)
 {
-    dma.Init.Mode = DMA_NORMAL;
+    hdma_usart1_rx.Init.Mode = DMA_NORMAL;
     lidar_start(&huart1);
     TEST_ASSERT_EQUAL_UINT32(1, errors_handled);
-    dma.Init.Mode = DMA_CIRCULAR;
+    hdma_usart1_rx.Init.Mode = DMA_CIRCULAR;
     huart1.Init.BaudRate = 115200;
     lidar_start(&huart1);
     TEST_ASSERT_EQUAL_UINT32(2, errors_handled);

@@ -16,13 +16,13 @@ static void begin_with_buffer(uint8_t *memory)
 {
     const tmini_config_t config = {
         .port = &tmini_stm32_hal_port,
-        .port_context = &hal_rig.port,
+        .port_context = &port,
         .rx_buffer = memory,
         .rx_size = 256,
     };
     play_begin(BY_BYTES);
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&small, &config));
-    TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_hal_start(&hal_rig.port, &small));
+    TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_hal_start(&port, &small));
 }
 
 /* --------------------------------------------------------------------------------- byte by byte */
@@ -33,10 +33,10 @@ void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)
         TEST_IGNORE_MESSAGE("newer HALs lock nothing");
     }
     play_start(BY_BYTES);
-    hal_rig.uart.Lock = true;
+    huart1.Lock = true;
     play_receive(1);
     TEST_ASSERT_EQUAL_UINT32(0, play_packets());
-    hal_rig.uart.Lock = false;
+    huart1.Lock = false;
     machine_pass(5000);
     poll_all();
     play_receive(2);
@@ -59,7 +59,7 @@ void test_bytes_that_come_during_a_restart_stay_within_the_buffer(void)
         machine_send(0, noise, 1);
         machine_pass(MACHINE_BYTE_NS / 1000);
         machine.access_ns = MACHINE_BYTE_NS % 1000 / accesses + 1;
-        tmini_stm32_hal_port.restart(&hal_rig.port);
+        tmini_stm32_hal_port.restart(&port);
         TEST_ASSERT_EQUAL_HEX8(0xEE, memory[256]);
     }
 }
@@ -77,16 +77,16 @@ void test_what_is_missing_or_not_set_up_is_refused(void)
 {
     static tmini_stm32_hal_t no_port;
     static tmini_t no_lidar;
-    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_hal_init(NULL, &hal_rig.uart));
-    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_hal_init(&hal_rig.port, NULL));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_hal_init(NULL, &huart1));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, tmini_stm32_hal_init(&port, NULL));
     TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(NULL, &lidar));
-    TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(&hal_rig.port, NULL));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(&port, NULL));
     TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(&no_port, &lidar));
-    TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(&hal_rig.port, &no_lidar));
+    TEST_ASSERT_EQUAL(TMINI_ERROR_STATE, tmini_stm32_hal_start(&port, &no_lidar));
     TEST_ASSERT_EQUAL(TMINI_ERROR_STATE,
                       tmini_stm32_hal_start_blocks(NULL, &lidar, hal_rig_block, 256));
     TEST_ASSERT_EQUAL(TMINI_ERROR_STATE,
-                      tmini_stm32_hal_start_blocks(&hal_rig.port, NULL, hal_rig_block, 256));
+                      tmini_stm32_hal_start_blocks(&port, NULL, hal_rig_block, 256));
     tmini_stm32_hal_stop(NULL);
     tmini_stm32_hal_stop(&no_port);
 }
@@ -94,9 +94,9 @@ void test_what_is_missing_or_not_set_up_is_refused(void)
 /* CubeMX proposes 115200 baud. */
 void test_another_baud_rate_or_format_is_refused(void)
 {
-    hal_rig_assert_refused(&hal_rig.uart.Init.BaudRate, 115200);
-    hal_rig_assert_refused(&hal_rig.uart.Init.Parity, UART_PARITY_EVEN);
-    hal_rig_assert_refused(&hal_rig.uart.Init.WordLength, UART_WORDLENGTH_9B);
+    hal_rig_assert_refused(&huart1.Init.BaudRate, 115200);
+    hal_rig_assert_refused(&huart1.Init.Parity, UART_PARITY_EVEN);
+    hal_rig_assert_refused(&huart1.Init.WordLength, UART_WORDLENGTH_9B);
 }
 
 /* Without the HAL's DMA module, and without a channel. */
@@ -105,7 +105,7 @@ void test_dma_is_refused_if_there_is_none(void)
     for (unsigned way = BY_DMA; way <= BY_BLOCKS; way++) {
         play_begin(way);
 #ifdef HAL_DMA_MODULE_ENABLED
-        hal_rig.uart.hdmarx = NULL;
+        huart1.hdmarx = NULL;
 #endif
         TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, rig_start());
     }
@@ -115,7 +115,7 @@ void test_dma_is_refused_if_there_is_none(void)
 
 static int send(const char *command, size_t size)
 {
-    return tmini_stm32_hal_port.write(&hal_rig.port, (const uint8_t *)command, size);
+    return tmini_stm32_hal_port.write(&port, (const uint8_t *)command, size);
 }
 
 void test_a_command_is_sent_by_interrupt_from_a_copy_which_the_next_one_does_not_change(void)
@@ -144,7 +144,7 @@ void test_writing_too_much_or_without_a_uart_is_an_error(void)
 void test_the_clock_is_the_hals_and_waiting_sleeps_until_the_next_interrupt(void)
 {
     machine_pass(12345678);
-    TEST_ASSERT_EQUAL_UINT32(12345, tmini_stm32_hal_port.now_ms(&hal_rig.port));
-    tmini_stm32_hal_port.wait(&hal_rig.port);
-    TEST_ASSERT_EQUAL_UINT32(12346, tmini_stm32_hal_port.now_ms(&hal_rig.port));
+    TEST_ASSERT_EQUAL_UINT32(12345, tmini_stm32_hal_port.now_ms(&port));
+    tmini_stm32_hal_port.wait(&port);
+    TEST_ASSERT_EQUAL_UINT32(12346, tmini_stm32_hal_port.now_ms(&port));
 }

@@ -29,18 +29,20 @@ static const struct {
     uint32_t value;
 } wrong[] = {
 #ifdef DMA_LINKEDLIST_CIRCULAR
-    {&hal_rig.dma.Mode, DMA_NORMAL},
-    {&hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], DMA_CTR1_DINC | DMA_CTR1_SDW_LOG2},
-    {&hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], DMA_CTR1_DINC | DMA_CTR1_DDW_LOG2},
-    {&hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], DMA_CTR1_DINC | DMA_CTR1_SINC},
-    {&hal_rig.node.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], 0},
+    {&hdma_usart1_rx.Mode, DMA_NORMAL},
+    {&Node_GPDMA1_Channel0.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET],
+     DMA_CTR1_DINC | DMA_CTR1_SDW_LOG2},
+    {&Node_GPDMA1_Channel0.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET],
+     DMA_CTR1_DINC | DMA_CTR1_DDW_LOG2},
+    {&Node_GPDMA1_Channel0.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], DMA_CTR1_DINC | DMA_CTR1_SINC},
+    {&Node_GPDMA1_Channel0.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET], 0},
 #else
-    {&hal_rig.dma.Init.Mode, DMA_NORMAL},
-    {&hal_rig.dma.Init.MemDataAlignment, DMA_MDATAALIGN_WORD},
-    {&hal_rig.dma.Init.MemInc, 0},
+    {&hdma_usart1_rx.Init.Mode, DMA_NORMAL},
+    {&hdma_usart1_rx.Init.MemDataAlignment, DMA_MDATAALIGN_WORD},
+    {&hdma_usart1_rx.Init.MemInc, 0},
 #endif
 #ifdef DMA_FIFOMODE_DISABLE
-    {&hal_rig.dma.Init.FIFOMode, DMA_FIFOMODE_ENABLE},
+    {&hdma_usart1_rx.Init.FIFOMode, DMA_FIFOMODE_ENABLE},
 #endif
 };
 
@@ -52,9 +54,9 @@ void test_dma_that_is_not_circular_by_byte_and_without_fifo_is_refused(void)
             hal_rig_assert_refused(wrong[i].member, wrong[i].value);
         }
 #ifdef DMA_LINKEDLIST_CIRCULAR
-        hal_rig.list.Head = NULL;
+        List_GPDMA1_Channel0.Head = NULL;
         TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, rig_start());
-        hal_rig.dma.LinkedListQueue = NULL;
+        hdma_usart1_rx.LinkedListQueue = NULL;
         TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, rig_start());
 #endif
     }
@@ -62,7 +64,7 @@ void test_dma_that_is_not_circular_by_byte_and_without_fifo_is_refused(void)
 
 static tmini_status_t start_blocks(uint8_t *block, size_t size)
 {
-    return tmini_stm32_hal_start_blocks(&hal_rig.port, &lidar, block, size);
+    return tmini_stm32_hal_start_blocks(&port, &lidar, block, size);
 }
 
 void test_blocks_of_a_wrong_size_are_refused(void)
@@ -129,10 +131,10 @@ void test_callbacks_of_another_uart_change_nothing(void)
                                     .ErrorCode = HAL_UART_ERROR_FE};
         play_send(1);
         machine_pass(300);
-        tmini_stm32_hal_rx_event(&hal_rig.port, &other);
-        tmini_stm32_hal_rx_half_complete(&hal_rig.port, &other);
-        tmini_stm32_hal_rx_complete(&hal_rig.port, &other);
-        tmini_stm32_hal_error(&hal_rig.port, &other);
+        tmini_stm32_hal_rx_event(&port, &other);
+        tmini_stm32_hal_rx_half_complete(&port, &other);
+        tmini_stm32_hal_rx_complete(&port, &other);
+        tmini_stm32_hal_error(&port, &other);
         TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&lidar.ring));
         TEST_ASSERT_EQUAL_UINT32(0, rig_counts().framing_errors);
     }
@@ -140,11 +142,11 @@ void test_callbacks_of_another_uart_change_nothing(void)
 
 static void idle_event(void)
 {
-    if (!irq_is_in_handler() && hal_rig.uart.RxState == HAL_UART_STATE_BUSY_RX) {
+    if (!irq_is_in_handler() && huart1.RxState == HAL_UART_STATE_BUSY_RX) {
 #ifdef HAL_UART_RXEVENT_IDLE
-        hal_rig.uart.RxEventType = HAL_UART_RXEVENT_IDLE;
+        huart1.RxEventType = HAL_UART_RXEVENT_IDLE;
 #endif
-        tmini_stm32_hal_rx_event(&hal_rig.port, &hal_rig.uart);
+        tmini_stm32_hal_rx_event(&port, &huart1);
     }
 }
 
@@ -206,9 +208,9 @@ void test_a_command_while_an_error_flag_is_set_is_no_lock_up(void)
         static const uint8_t broken = 0x00;
         machine_send(MODEL_FE, &broken, 1);
         machine_pass(5000);
-        TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&hal_rig.port, command, 2));
+        TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&port, command, 2));
         machine_pass(1000);
-        TEST_ASSERT_EQUAL(HAL_UART_STATE_READY, hal_rig.uart.gState);
+        TEST_ASSERT_EQUAL(HAL_UART_STATE_READY, huart1.gState);
     }
 }
 
@@ -217,12 +219,12 @@ void test_after_stop_bytes_received_by_others_with_the_same_dma_are_left_alone(v
     while (next_circle()) {
         static uint8_t others[64];
         play_receive(5);
-        tmini_stm32_hal_stop(&hal_rig.port);
-        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&hal_rig.uart, others, sizeof others));
+        tmini_stm32_hal_stop(&port);
+        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&huart1, others, sizeof others));
         play_receive(10);
         TEST_ASSERT_EQUAL_UINT32(5, play_packets());
         TEST_ASSERT_EQUAL_UINT32(5 * sizeof start_packet, play_accounted());
-        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&hal_rig.uart));
+        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&huart1));
     }
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-#include "stm32_model_hal.h"
+#include "usart.h"
 
 #ifndef HAL_UART_RECEPTION_STANDARD
 #define HAL_UART_RECEPTION_STANDARD 0u
@@ -92,14 +92,11 @@ static void idle_with_dma(UART_HandleTypeDef *uart)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-/* The only handle that uses the only DMA channel. */
-static UART_HandleTypeDef *dma_user;
-
 static void dma_error_reported(DMA_HandleTypeDef *dma)
 {
     (void)dma;
-    dma_user->RxXferCount = 0;
-    HAL_UART_ErrorCallback(dma_user);
+    huart1.RxXferCount = 0;
+    HAL_UART_ErrorCallback(&huart1);
 }
 
 /* With linked lists, the channel finishes its current block before it reads the list of the
@@ -120,7 +117,6 @@ static bool dma_start(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
     if (dma->State != HAL_DMA_STATE_READY) {
         return false;
     }
-    dma_user = uart;
     dma->State = HAL_DMA_STATE_BUSY;
     model_step();
     const uint32_t left = first_round(size);
@@ -224,14 +220,14 @@ void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
         return;
     }
     if ((flags & MODEL_DMA_TE) != 0) {
-        dma_failed(dma_user);
+        dma_failed(&huart1);
         return;
     }
     if ((flags & MODEL_DMA_HT) != 0) {
-        dma_half(dma_user);
+        dma_half(&huart1);
     }
     if ((flags & MODEL_DMA_TC) != 0) {
-        dma_complete(dma_user);
+        dma_complete(&huart1);
     }
 }
 
@@ -485,6 +481,60 @@ HAL_StatusTypeDef HAL_UART_Transmit_IT(UART_HandleTypeDef *huart, const uint8_t 
 uint32_t HAL_GetTick(void)
 {
     return model.tick_ms;
+}
+
+/* -------------------------------------------------------------------------- what CubeMX generates */
+
+UART_HandleTypeDef huart1;
+
+#ifdef HAL_DMA_MODULE_ENABLED
+
+DMA_HandleTypeDef hdma_usart1_rx;
+#ifdef DMA_LINKEDLIST_CIRCULAR
+DMA_NodeTypeDef Node_GPDMA1_Channel0;
+DMA_QListTypeDef List_GPDMA1_Channel0;
+#endif
+
+static void dma_interrupt(void)
+{
+    HAL_DMA_IRQHandler(&hdma_usart1_rx);
+}
+
+static void init_dma(void)
+{
+    hdma_usart1_rx = (DMA_HandleTypeDef){
+        .Instance = &model.dma.channel, .Init.Mode = DMA_CIRCULAR, .Init.MemInc = DMA_MINC_ENABLE};
+#ifdef DMA_LINKEDLIST_CIRCULAR
+    Node_GPDMA1_Channel0.LinkRegisters[NODE_CTR1_DEFAULT_OFFSET] = DMA_CTR1_DINC;
+    List_GPDMA1_Channel0.Head = &Node_GPDMA1_Channel0;
+    hdma_usart1_rx.Mode = DMA_LINKEDLIST_CIRCULAR;
+    hdma_usart1_rx.LinkedListQueue = &List_GPDMA1_Channel0;
+#endif
+    huart1.hdmarx = &hdma_usart1_rx;
+    irq.lines[MODEL_DMA_IRQ].handler = dma_interrupt;
+}
+
+#else
+
+static void init_dma(void) {}
+
+#endif
+
+static void usart_interrupt(void)
+{
+    HAL_UART_IRQHandler(&huart1);
+}
+
+void MX_USART1_UART_Init(void)
+{
+    huart1 = (UART_HandleTypeDef){
+        .Instance = &model_usart,
+        .Init = {.BaudRate = 230400, .WordLength = UART_WORDLENGTH_8B, .Parity = UART_PARITY_NONE},
+        .gState = HAL_UART_STATE_READY,
+        .RxState = HAL_UART_STATE_READY,
+    };
+    irq.lines[MODEL_USART_IRQ].handler = usart_interrupt;
+    init_dma();
 }
 
 /* ----------------------------------------------------------------------------------- data cache */
