@@ -144,7 +144,7 @@ ACT(report_half, tmini_stm32_hal_rx_half_complete(&port, &huart1))
 
 #endif
 
-static const play_word_t hal_words[] = {
+const play_word_t port_words[] = {
 #ifdef HAL_DMA_MODULE_ENABLED
     {.name = "info", .act = ask_for_info},
     {.name = "end", .act = end_reception},
@@ -160,5 +160,3 @@ static const play_word_t hal_words[] = {
 #endif
     {.name = NULL},
 };
-
-const play_word_t *const port_words[] = {rig_words, hal_words, NULL};

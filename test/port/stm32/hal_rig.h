@@ -8,7 +8,7 @@
 
 #include "tmini_stm32_hal.h"
 
-#include "stm32_rig.h"
+#include "play.h"
 #include "usart.h"
 
 #define HAL_RIG_BLOCK_SIZE 256u

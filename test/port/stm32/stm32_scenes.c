@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What each STM32 port must do, one situation at a time, in each of its ways to receive (play.h;
- * more words: stm32_rig.c). Interrupts stay pending until a handler clears them, and may come at
+/* What each STM32 port must do, one situation at a time, in each of its ways to receive
+ * (play.h). Interrupts stay pending until a handler clears them, and may come at
  * any access. A byte takes 43.4 µs, and a lap of the buffer 44,445 µs. */
 
 #include "play.h"

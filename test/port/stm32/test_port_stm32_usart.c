@@ -8,13 +8,13 @@
 
 #include "known_packets.h"
 #include "random.h"
-#include "stm32_rig.h"
+#include "play.h"
 #include "unity.h"
 
 static tmini_stm32_usart_t port;
 static tmini_stm32_usart_wiring_t wiring;
 
-/* ------------------------------------------------------------------ the port as stm32_rig wants */
+/* ------------------------------------------------------------------ the port as play.c wants */
 
 static void wait(void)
 {
@@ -107,7 +107,7 @@ NUMBER(byte_waits, (model.flags & MODEL_RXNE) != 0)
 NUMBER(idle_interrupts, (model_usart.CR1 & MODEL_CR1_IDLEIE) != 0)
 NUMBER(bytes, rig_counts().bytes)
 
-static const play_word_t usart_words[] = {
+const play_word_t port_words[] = {
     {.name = "interrupt", .act = usart_handler},
     {.name = "stopped", .act = stop_channel},
     {.name = "FIFO", .act = enable_fifo},
@@ -116,8 +116,6 @@ static const play_word_t usart_words[] = {
     {.name = "counted", .count = bytes},
     {.name = NULL},
 };
-
-const play_word_t *const port_words[] = {rig_words, usart_words, NULL};
 
 /* ----------------------------------------------------------------------------------- life cycle */
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A play is a row of a table (rows.h), told in words, and plays for each way of receiving that it
+/* One of the STM32 ports on the model: what the tests of both ports share (every_port.h), and plays.
+ *
+ * A play is a row of a table (rows.h), told in words, and plays for each way of receiving that it
  * names. The simulated lidar has no power: only what the play sends comes.
  *
  *     bytes DMA:      plays where a way's name ends with one of these words; all: everywhere
@@ -20,15 +22,32 @@
  *     skipped overrun accounted more     other numbers; more: packets since `mark`
  *     served position                    interrupts; how many bytes the lidar has been given
  *     30( P +1 )      that many times
+ *     FE NE           the next byte comes with this error; FEs, NEs, ORE, others: their numbers
+ *     hold:700        interrupts are held back for 700 µs from now; held:700: until they have passed
  *
- * and the port's own words. */
+ * more about the registers (play.c), and the port's own words. */
 
 #ifndef PLAY_H
 #define PLAY_H
 
-#include <stdint.h>
-
+#include "every_port.h"
 #include "rows.h"
+#include "stm32_model.h"
+
+/* Indices of port_ways. */
+typedef enum { BY_BYTES, BY_DMA, BY_BLOCKS } rig_way_t;
+
+typedef struct {
+    uint32_t bytes; /* Only without the HAL. */
+    uint32_t overruns;
+    uint32_t framing_errors;
+    uint32_t noise_errors;
+    uint32_t laps;
+    uint32_t restarts;
+    uint32_t other_errors;
+} rig_counts_t;
+
+extern rig_way_t rig_way; /* The one that has been chosen. */
 
 /* A word that acts; that acts with the number after it, or 1; that is the name of a number. */
 typedef struct {
@@ -55,14 +74,16 @@ typedef struct {
         return (uint32_t)(__VA_ARGS__); \
     }
 
-/* Defined by a port's test: tables of words, in which the last name is NULL, and then NULL. */
-extern const play_word_t *const port_words[];
+/* Defined for each port. */
+extern const play_word_t port_words[]; /* The last name is NULL. */
+void rig_open(void);                   /* Resets the hardware and sets the port up. */
+tmini_status_t rig_start(void);        /* For `lidar`. */
+rig_counts_t rig_counts(void);
+bool rig_is_off(void);          /* Nothing of the port is switched on. */
+void rig_break_reception(void); /* No flag shows it. */
 
 /* Plays a row, for run_rows(). */
 void play_row(const row_t *row);
-
-/* The next byte on the line comes with these errors. */
-void play_damage(uint32_t errors);
 
 /* For tests that are no rows: P:count; P:count run; packets; bytes accounted for. */
 void play_send(uint32_t count);
