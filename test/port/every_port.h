@@ -7,8 +7,12 @@
 #ifndef EVERY_PORT_H
 #define EVERY_PORT_H
 
+#include "known_packets.h"
 #include "machine.h"
 #include "scanning.h"
+
+/* Tests split the manual's packet here. Only the port can notice a loss in between. */
+#define PACKET_CUT 30u
 
 /* What the port has counted; what it does not count is 0. */
 typedef struct {

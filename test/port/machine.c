@@ -35,7 +35,8 @@ static void fail(unsigned number)
 void machine_new_lidar(const sim_observer_t *observer)
 {
     sim_config_t config = sim_default_config();
-    config.marked = observer != NULL; /* So that each point shows which sample it is (truth.h). */
+    config.marked =
+        observer != NULL; /* So that each point shows which sample it is (scanning.h). */
     sim_init(&machine.lidar, &config);
     sim_observe(&machine.lidar, observer);
 }

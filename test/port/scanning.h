@@ -2,15 +2,15 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A program that scans with the port under test: a lidar with its buffers, and a loop. Its scans
- * are compared with what the simulated lidar has sent (truth.h). */
+ * are compared with what the simulated lidar has sent (sim_judge.h). */
 
 #ifndef SCANNING_H
 #define SCANNING_H
 
 #include <stdint.h>
 
+#include "simulator.h"
 #include "tmini/tmini.h"
-#include "truth.h"
 
 typedef struct {
     const tmini_port_t *port;
@@ -20,6 +20,20 @@ typedef struct {
 } scanning_t;
 
 extern tmini_t lidar;
+
+/* Clears the record of what was sent; returns the observer to give to the simulated lidar. */
+sim_observer_t truth_begin(void);
+
+/* The number of packets sent. */
+uint32_t truth_packets(void);
+
+/* The scan is complete and has exactly the points of this revolution, or of some later one. */
+void truth_assert_revolution(const tmini_scan_t *scan, uint32_t revolution);
+void truth_assert_some_revolution(const tmini_scan_t *scan);
+
+/* The scan has nothing but points of one revolution, in this order and in no other scan. Some may
+ * be missing, if it says so. */
+void truth_assert_nothing_invented(const tmini_scan_t *scan);
 
 /* Resets the program and sets up `lidar`, with a receive buffer of `rx_size` bytes, at most
  * 1024. */

@@ -7,8 +7,8 @@
 
 #include "unity.h"
 
+#include "scanning.h"
 #include "tmini_zephyr_device.h"
-#include "truth.h"
 #include "zephyr_model.h"
 
 static const struct device *const device = DEVICE_DT_GET(DT_NODELABEL(lidar));
@@ -122,8 +122,7 @@ void test_without_a_callback_the_device_scans_too(void)
 
 void test_a_request_that_the_library_refuses_is_an_error(void)
 {
-    tmini_t *const lidar = tmini_zephyr_device_lidar(device);
-    memset(lidar, 0, sizeof *lidar);
+    memset(tmini_zephyr_device_lidar(device), 0, sizeof(tmini_t));
     TEST_ASSERT_LESS_THAN_INT(0, tmini_zephyr_device_start(device));
     TEST_ASSERT_LESS_THAN_INT(0, tmini_zephyr_device_stop(device));
 }
