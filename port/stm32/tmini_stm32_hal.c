@@ -27,9 +27,7 @@ static bool is_aligned(const void *buffer, size_t size)
 static void read_anew(uint8_t *buffer, size_t from, size_t to)
 {
     const size_t first = from / CACHE_LINE * CACHE_LINE;
-    if (to > from) {
-        SCB_InvalidateDCache_by_Addr((void *)&buffer[first], (int32_t)(to - first));
-    }
+    SCB_InvalidateDCache_by_Addr((void *)&buffer[first], (int32_t)(to - first));
 }
 
 /* The cache must not write old data over new bytes from DMA later. */

@@ -6,7 +6,9 @@
 #include "unity.h"
 
 tmini_stm32_hal_t port;
-uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE] __ALIGNED(32);
+uint8_t hal_rig_block[1024] __ALIGNED(32);
+
+static uint32_t block_size;
 
 static void wait(void)
 {
@@ -54,6 +56,7 @@ void __WFI(void)
 
 void rig_open(void)
 {
+    block_size = 256;
     model_reset();
     MX_USART1_UART_Init();
     (void)tmini_stm32_hal_init(&port, &huart1);
@@ -63,8 +66,8 @@ tmini_status_t rig_start(void)
 {
     if (rig_way == BY_BLOCKS) {
         model.cached = hal_rig_block;
-        model.cached_size = sizeof hal_rig_block;
-        return tmini_stm32_hal_start_blocks(&port, &lidar, hal_rig_block, sizeof hal_rig_block);
+        model.cached_size = block_size;
+        return tmini_stm32_hal_start_blocks(&port, &lidar, hal_rig_block, block_size);
     }
     model.cached = tmini_rx_buffer(&lidar, &model.cached_size);
     return tmini_stm32_hal_start(&port, &lidar);
@@ -110,6 +113,7 @@ void rig_break_reception(void)
 
 #ifdef HAL_DMA_MODULE_ENABLED
 
+ACT_ON(set_block_size, block_size = number)
 ACT(ask_for_info, TEST_ASSERT_EQUAL(TMINI_OK, tmini_request_info(&lidar)))
 ACT(end_reception, huart1.RxState = HAL_UART_STATE_READY)
 ACT(pause_dma, model_usart.CR3 = 0)
@@ -146,6 +150,7 @@ ACT(report_half, tmini_stm32_hal_rx_half_complete(&port, &huart1))
 
 const play_word_t port_words[] = {
 #ifdef HAL_DMA_MODULE_ENABLED
+    {.name = "size", .act_on = set_block_size},
     {.name = "info", .act = ask_for_info},
     {.name = "end", .act = end_reception},
     {.name = "pause", .act = pause_dma},

@@ -11,10 +11,8 @@
 #include "play.h"
 #include "usart.h"
 
-#define HAL_RIG_BLOCK_SIZE 256u
-
 extern tmini_stm32_hal_t port;
-extern uint8_t hal_rig_block[HAL_RIG_BLOCK_SIZE];
+extern uint8_t hal_rig_block[1024];
 
 /* With this value in this place, a start is refused. */
 void hal_rig_assert_refused(uint32_t *member, uint32_t value);

@@ -25,6 +25,11 @@ static void begin_with_buffer(uint8_t *memory)
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_hal_start(&port, &small));
 }
 
+static int send(const char *command, size_t size)
+{
+    return tmini_stm32_hal_port.write(&port, (const uint8_t *)command, size);
+}
+
 /* --------------------------------------------------------------------------------- byte by byte */
 
 void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)
@@ -34,6 +39,7 @@ void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)
     }
     play_start(BY_BYTES);
     huart1.Lock = true;
+    TEST_ASSERT_EQUAL_INT(0, send("\xA5\x65", 2));
     play_receive(1);
     TEST_ASSERT_EQUAL_UINT32(0, play_packets());
     huart1.Lock = false;
@@ -112,11 +118,6 @@ void test_dma_is_refused_if_there_is_none(void)
 }
 
 /* -------------------------------------------------------------------------------------- sending */
-
-static int send(const char *command, size_t size)
-{
-    return tmini_stm32_hal_port.write(&port, (const uint8_t *)command, size);
-}
 
 void test_a_command_is_sent_by_interrupt_from_a_copy_which_the_next_one_does_not_change(void)
 {

@@ -98,6 +98,8 @@ static const row_t scenes[] IN_FLASH = {
     ROW(failed_restarts_are_tried_again_some_milliseconds_later, /* In 30 ms. */
         "DMA blocks: block 300( ~100 poll ) restarts>5 restarts<12 unblock"),
     /* ---- Laps ---- */
+    ROW(a_large_block_delivers_every_byte, /* A position needs more than 8 bits. */
+        "blocks idle: size:1024 start P:200 run packets:200 laps:0"),
     /* If DMA's interrupt comes inside the idle line's, both callbacks see the DMA event's type. */
     ROW(an_event_that_is_reported_twice_is_no_lap, /* DMA has passed the middle. */
         "DMA: P:60 ~22880 event event laps:0"),

@@ -94,7 +94,7 @@ void rig_break_reception(void)
 
 /* ------------------------------------------------------------------------------ words of scenes */
 
-ACT(stop_channel, model.dma.enabled = false)
+ACT_ON(set_channel, model.dma.enabled = number)
 
 /* LL has left the FIFO threshold's interrupt on, which the port does not need. */
 static void enable_fifo(void)
@@ -109,7 +109,7 @@ NUMBER(bytes, rig_counts().bytes)
 
 const play_word_t port_words[] = {
     {.name = "interrupt", .act = usart_handler},
-    {.name = "stopped", .act = stop_channel},
+    {.name = "channel", .act_on = set_channel},
     {.name = "FIFO", .act = enable_fifo},
     {.name = "RXNE", .count = byte_waits},
     {.name = "IDLEIE", .count = idle_interrupts},
@@ -218,12 +218,12 @@ static const row_t scenes[] IN_FLASH = {
     /* On a USART with SR, reading DR clears errors and the idle flag (reference manual RM0090), but
      * also removes a byte that waits for DMA. */
     ROW(a_byte_that_waits_for_dma_is_not_removed,
-        "DMA: deaf stopped P ~2000 RXNE:1 ORE-stands:1 interrupt interrupt RXNE:1 "
+        "DMA: deaf channel:0 P ~2000 RXNE:1 ORE-stands:1 interrupt interrupt RXNE:1 "
         "ORE:1"),
     /* On a USART with SR, the idle flag cannot be cleared while a byte waits. */
     ROW(a_dma_channel_that_has_stopped_is_no_lock_up,
-        "DMA: P:10 run stopped P:10 run packets:10 stop start P:10 run packets:20 P ~1000 "
-        "IDLEIE:1"),
+        "DMA: P:10 run channel:0 P:10 run packets:10 channel:1 +2 IDLEIE:1 mark P:10 run more:10 "
+        "IDLEIE:1 channel:0 P:10 run stop start P:10 run packets:30"),
 #ifndef STM32_MODEL_SR
     ROW(an_enabled_fifo_keeps_eight_bytes_for_a_late_interrupt,
         "bytes: FIFO 20( P ~100 hold:340 ~2000 ) packets:20 ORE:0"),
