@@ -2,12 +2,13 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Compares the simulated lidar's bytes with docs/protocol.md. The check `recordings` compares those
- * of a healthy one with test/recordings. */
+ * of a healthy one with test/recordings. They come over the faulty wire, which makes the faults
+ * asked for, and reports them correctly. */
 
+#include "link.h"
 #include "members.h"
 #include "reference_decoder.h"
 #include "rows.h"
-#include "simulator.h"
 
 #include "unity.h"
 
@@ -16,39 +17,84 @@
 #include <string.h>
 
 #define SECOND UINT64_C(1000000)
-#define STREAM_MAX 2000000u
+#define STREAM_MAX 4000000u
 #define PACKETS_MAX 20000u
 
 static sim_t sim;
 static sim_config_t config;
+static sim_link_t wire;
+static sim_link_config_t wire_config;
 static uint64_t now;
 static uint8_t stream[STREAM_MAX];
 static size_t size;
+static size_t taken;  /* Bytes of the stream that a row has named. */
+static size_t marked; /* Bytes that had come. */
 static reference_item_t packets[PACKETS_MAX];
 static size_t packet_count;
 static reference_counts_t counts;
 
+/* What the wire has reported. */
+static struct {
+    sim_link_packet_t packet;
+    uint8_t bytes[SIM_FRAME_MAX];
+} fates[PACKETS_MAX];
+static size_t fate_count;
+
+static struct {
+    unsigned begun[SIM_LINK_KINDS];
+    unsigned ended[SIM_LINK_KINDS];
+} heard;
+
 /* ---- Helpers ---- */
+
+static void hear_packet(void *context, const sim_link_packet_t *packet)
+{
+    (void)context;
+    fates[fate_count].packet = *packet;
+    memcpy(fates[fate_count].bytes, packet->sent.bytes, packet->sent.length);
+    fate_count++;
+}
+
+static void hear_fault(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us)
+{
+    (void)context;
+    (void)at_us;
+    heard.begun[kind] += begins ? 1u : 0u;
+    heard.ended[kind] += begins ? 0u : 1u;
+}
 
 static void power_up(void)
 {
+    static const sim_link_observer_t observer = {.on_packet = hear_packet, .on_fault = hear_fault};
     sim_init(&sim, &config);
+    sim_link_init(&wire, &sim, &wire_config);
+    sim_link_observe(&wire, &observer);
+    memset(&heard, 0, sizeof heard);
+    fate_count = 0;
     now = 0;
     size = 0;
+    taken = 0;
+}
+
+/* The time is this; nothing was taken since the latest bytes. */
+static void run_until(uint64_t us)
+{
+    now = us;
+    size += sim_link_read(&wire, now, stream + size, STREAM_MAX - size);
+    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
 }
 
 static void run_ms(uint32_t milliseconds)
 {
     for (; milliseconds > 0; milliseconds--) {
-        now += 1000;
-        size += sim_transmit(&sim, now, stream + size, STREAM_MAX - size);
+        run_until(now + 1000u);
     }
 }
 
 static void send(uint8_t code)
 {
     const uint8_t command[2] = {0xA5, code};
-    sim_receive(&sim, command, 2, now);
+    sim_link_write(&wire, command, 2, now);
 }
 
 static void forget_stream(void)
@@ -70,7 +116,6 @@ static void decode(void)
     const reference_options_t options = {80, &start_reply};
     packet_count = 0;
     counts = reference_decode(stream, size, &options, collect, NULL);
-    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
 }
 
 /* Scans for some seconds, after the spin-up. */
@@ -104,6 +149,7 @@ static unsigned points_between(size_t from, size_t to)
 void setUp(void)
 {
     config = sim_default_config();
+    wire_config = sim_link_default_config();
     power_up();
 }
 
@@ -148,9 +194,51 @@ static unsigned number_of(const char *name, const char *const *names, unsigned c
     return number;
 }
 
+/* ---- What the wire reports ---- */
+
+static size_t intact_packets(void)
+{
+    size_t intact = 0;
+    for (size_t i = 0; i < fate_count; i++) {
+        intact += fates[i].packet.intact ? 1u : 0u;
+    }
+    return intact;
+}
+
+static bool is_in_stream(const sim_link_packet_t *packet)
+{
+    return packet->intact && packet->offset + packet->sent.length <= size;
+}
+
+/* Every packet reported as intact has arrived. An independent decoder finds hardly any others (for
+ * example, after two flips in one column of the checksum). */
+static void expect_the_truth_about_every_packet(void)
+{
+    const reference_options_t options = {80, NULL};
+    size_t there = 0;
+    for (size_t i = 0; i < fate_count; i++) {
+        const sim_link_packet_t *packet = &fates[i].packet;
+        if (is_in_stream(packet)) {
+            TEST_ASSERT_EQUAL_MEMORY(fates[i].bytes, stream + packet->offset, packet->sent.length);
+            there++;
+        }
+    }
+    const uint64_t found = reference_decode(stream, size, &options, NULL, NULL).packets;
+    TEST_ASSERT_TRUE(found >= there && found <= there + fate_count / 1000u);
+    TEST_ASSERT_EQUAL_size_t(fate_count, wire.counts.packets);
+    TEST_ASSERT_EQUAL_size_t(intact_packets(), wire.counts.intact_packets);
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        TEST_ASSERT_UINT_WITHIN(1, heard.begun[kind], heard.ended[kind]);
+        TEST_ASSERT_EQUAL_UINT(heard.begun[kind], wire.counts.faults[kind]);
+    }
+}
+
 /* ---- Rows ---- */
 
-static size_t taken; /* Bytes of the stream that a row has named. */
+static size_t absolute(size_t a, size_t b)
+{
+    return a > b ? a - b : b - a;
+}
 
 static unsigned ranges(void)
 {
@@ -163,8 +251,10 @@ static unsigned ranges(void)
     return sum;
 }
 
+/* "begun.drop": faults of a kind. */
 static bool look_up(const char *word, size_t length, uint64_t *number)
 {
+    const size_t spoilt = fate_count - intact_packets();
     decode();
     const struct {
         const char *word;
@@ -185,7 +275,25 @@ static bool look_up(const char *word, size_t length, uint64_t *number)
         {"ranges", ranges()},
         {"turned",
          packet_count > 0 ? (uint64_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
+        {"intact", intact_packets()},
+        {"spoilt", spoilt},
+        {"latest_intact", fate_count > 0 && fates[fate_count - 1u].packet.intact ? 1 : 0},
+        {"untold", absolute(sim.counts.packets, fate_count)},
+        {"unexplained", absolute(heard.ended[SIM_LINK_CUT], spoilt)},
+        {"unaccounted",
+         absolute(size + heard.begun[SIM_LINK_DROP], wire.passed + heard.begun[SIM_LINK_INSERT])},
+        {"new", size - marked},
+        {"faulty", sim_link_is_faulty(&wire) ? 1 : 0},
+        {"last_fault", sim_link_last_fault_us(&wire)},
     };
+    const size_t prefix = strlen("begun.");
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS && length > prefix; kind++) {
+        const char *const name = sim_link_kind_name((sim_link_kind_t)kind);
+        if (strlen(name) == length - prefix && strncmp(word + prefix, name, length - prefix) == 0) {
+            *number = word[0] == 'b' ? heard.begun[kind] : heard.ended[kind];
+            return true;
+        }
+    }
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++) {
         if (strlen(facts[i].word) == length && strncmp(facts[i].word, word, length) == 0) {
             *number = facts[i].number;
@@ -213,7 +321,8 @@ static bool is_fact(const char *word)
     return true;
 }
 
-/* A setting, before anything else: powers up again. */
+/* A setting of the lidar, or the mean gap of a fault of the wire; before anything else: powers up
+ * again. */
 static bool is_setting(const char *word)
 {
     const struct {
@@ -221,22 +330,28 @@ static bool is_setting(const char *word)
         void *member;
         size_t size;
     } members[] = {
-        {"frequency:", MEMBER(config.frequency_chz)},
-        {"latency:", MEMBER(config.reply_latency_ms)},
-        {"tail:", MEMBER(config.stop_tail_ms)},
-        {"fatal:", MEMBER(config.fatal_health)},
-        {"never_answers:", MEMBER(config.never_answers)},
-        {"blocked_sends_starts:", MEMBER(config.blocked_sends_starts)},
-        {"first_angle:", MEMBER(config.first_angle_q6)},
-        {"spin_percent:", MEMBER(config.spin_up_percent)},
-        {"wobble:", MEMBER(config.wobble_permille)},
-        {"sample_size:", MEMBER(config.sample_size)},
-        {"blind_every:", MEMBER(config.blind_every)},
+        {"frequency", MEMBER(config.frequency_chz)},
+        {"latency", MEMBER(config.reply_latency_ms)},
+        {"tail", MEMBER(config.stop_tail_ms)},
+        {"fatal", MEMBER(config.fatal_health)},
+        {"never_answers", MEMBER(config.never_answers)},
+        {"blocked_sends_starts", MEMBER(config.blocked_sends_starts)},
+        {"first_angle", MEMBER(config.first_angle_q6)},
+        {"spin_percent", MEMBER(config.spin_up_percent)},
+        {"wobble", MEMBER(config.wobble_permille)},
+        {"sample_size", MEMBER(config.sample_size)},
+        {"blind_every", MEMBER(config.blind_every)},
     };
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
-        const size_t length = strlen(members[i].word);
-        if (strncmp(members[i].word, word, length) == 0) {
-            member_store(members[i].member, members[i].size, strtoul(&word[length], NULL, 0));
+        if (row_is(word, members[i].word)) {
+            member_store(members[i].member, members[i].size, row_number(word));
+            power_up();
+            return true;
+        }
+    }
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        if (row_is(word, sim_link_kind_name((sim_link_kind_t)kind))) {
+            wire_config.mean_gap[kind] = row_number(word);
             power_up();
             return true;
         }
@@ -244,22 +359,11 @@ static bool is_setting(const char *word)
     return false;
 }
 
-static size_t parse_hex(const char *text, uint8_t *bytes)
-{
-    size_t count = 0;
-    unsigned value;
-    while (sscanf(text, "%2x", &value) == 1) {
-        bytes[count++] = (uint8_t)value;
-        text += 2;
-    }
-    return count;
-}
-
 /* The next bytes of the stream. */
 static void expect_bytes(const char *hex)
 {
     uint8_t bytes[ROW_WORD_MAX];
-    const size_t count = parse_hex(hex, bytes);
+    const size_t count = row_bytes(hex, bytes);
     run_ms(taken == 0 ? 10 : 0);
     TEST_ASSERT_TRUE_MESSAGE(taken + count <= size, "no more bytes come");
     TEST_ASSERT_EQUAL_HEX8_ARRAY(bytes, &stream[taken], count);
@@ -305,24 +409,15 @@ static void expect_mode(const char *name)
 static void run_into_a_packet(void)
 {
     do {
-        forget_stream();
         run_ms(1);
-    } while (size != 23);
-    forget_stream();
-}
-
-/* The time is this; nothing was taken since the latest bytes. */
-static void run_until(uint64_t us)
-{
-    now = us;
-    size += sim_transmit(&sim, now, stream + size, STREAM_MAX - size);
+    } while (!wire.packet_open);
 }
 
 static void plan_trouble(const char *text)
 {
     static const char *const events[] = {"command", "reply", "beginning", "start"};
     uint32_t ms;
-    const sim_trouble_t trouble = sim_trouble_named(strchr(text, ':') + 1, &ms);
+    const sim_trouble_t trouble = sim_trouble_named(row_text(text), &ms);
     unkind((sim_event_t)number_of(text, events, 4), trouble, ms);
 }
 
@@ -343,19 +438,31 @@ static void run_until_spoilt(void)
 static void send_raw(const char *hex)
 {
     uint8_t bytes[ROW_WORD_MAX];
-    sim_receive(&sim, bytes, parse_hex(hex, bytes), now);
+    sim_link_write(&wire, bytes, row_bytes(hex, bytes), now);
+}
+
+/* "stall:100" */
+static void force(const char *text)
+{
+    unsigned kind = 0;
+    while (kind < SIM_LINK_KINDS && !row_is(text, sim_link_kind_name((sim_link_kind_t)kind))) {
+        kind++;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(kind < SIM_LINK_KINDS, text);
+    sim_link_force(&wire, (sim_link_kind_t)kind, row_number(text), now);
 }
 
 /* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes, which
  * come within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget":
  * what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40":
- * the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans": trouble; settings
- * and facts above. */
+ * the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans": trouble; "fails":
+ * power is lost so many microseconds later, and the wire does not know; "force:stall:100": a fault
+ * of the wire; "calm"; "truth": what it has reported about each packet is true; settings and facts
+ * above. */
 static void tell(char *word)
 {
-    const unsigned long number =
-        strchr(word, ':') == NULL ? 0 : strtoul(strchr(word, ':') + 1, NULL, 0);
-    const bool is_on = number != 0;
+    const uint32_t number = row_number(word);
+    const char *const text = row_text(word);
     unsigned a, b;
     if (word[0] == '>') {
         send((uint8_t)strtoul(&word[1], NULL, 16));
@@ -372,50 +479,55 @@ static void tell(char *word)
     } else if (sscanf(word, "ct:%u:%x", &a, &b) == 2) {
         decode();
         TEST_ASSERT_EQUAL_HEX8(b, packets[next_start(0) + a].ct);
-    } else if (strncmp(word, "spoil:", 6) == 0) {
-        plan_trouble(&word[6]);
-    } else if (strncmp(word, "befalls:", 8) == 0) {
-        befall(&word[8]);
-    } else if (strcmp(word, "end") == 0) {
+    } else if (row_is(word, "spoil")) {
+        plan_trouble(text);
+    } else if (row_is(word, "befalls")) {
+        befall(text);
+    } else if (row_is(word, "end")) {
         expect_end();
-    } else if (strcmp(word, "forget") == 0) {
+    } else if (row_is(word, "forget")) {
         taken = 0;
         forget_stream();
-    } else if (strcmp(word, "inside") == 0) {
+        memset(&heard, 0, sizeof heard);
+    } else if (row_is(word, "mark")) {
+        marked = size;
+    } else if (row_is(word, "inside")) {
         run_into_a_packet();
-    } else if (strcmp(word, "spoilt") == 0) {
+    } else if (row_is(word, "spoilt_once")) {
         run_until_spoilt();
-    } else if (strcmp(word, "lose") == 0) {
+    } else if (row_is(word, "lose")) {
         sim_lose_next_reply(&sim);
-    } else if (strcmp(word, "clear") == 0) {
+    } else if (row_is(word, "clear")) {
         sim_clear_obstacles(&sim);
-    } else if (strncmp(word, "got:", 4) == 0) {
-        expect_frequency((unsigned)number);
-    } else if (strncmp(word, "us:", 3) == 0) {
+    } else if (row_is(word, "got")) {
+        expect_frequency(number);
+    } else if (row_is(word, "us")) {
         run_until(number);
-    } else if (strncmp(word, "scan:", 5) == 0) {
-        scan_seconds((uint32_t)number);
-    } else if (strncmp(word, "delay:", 6) == 0) {
-        sim_delay_next_reply(&sim, (uint32_t)number);
-    } else if (strncmp(word, "sick:", 5) == 0) {
+    } else if (row_is(word, "scan")) {
+        scan_seconds(number);
+    } else if (row_is(word, "delay")) {
+        sim_delay_next_reply(&sim, number);
+    } else if (row_is(word, "sick")) {
         sim_set_health(&sim, (uint8_t)number);
-    } else if (strncmp(word, "block:", 6) == 0) {
-        sim_block_rotor(&sim, is_on);
-    } else if (strncmp(word, "cover:", 6) == 0) {
-        sim_cover_window(&sim, is_on);
-    } else if (strncmp(word, "power:", 6) == 0) {
-        sim_power(&sim, is_on, now);
-    } else if (strncmp(word, "obstacle:", 9) == 0) {
+    } else if (row_is(word, "block")) {
+        sim_block_rotor(&sim, number != 0);
+    } else if (row_is(word, "cover")) {
+        sim_cover_window(&sim, number != 0);
+    } else if (row_is(word, "power")) {
+        sim_power(&sim, number != 0, now);
+    } else if (row_is(word, "fails")) {
+        sim_power(&sim, false, now + number);
+    } else if (row_is(word, "obstacle")) {
         sim_place_obstacle(&sim, 0, 640, (uint16_t)number);
+    } else if (row_is(word, "force")) {
+        force(text);
+    } else if (row_is(word, "calm")) {
+        sim_link_calm(&wire, now);
+    } else if (row_is(word, "truth")) {
+        expect_the_truth_about_every_packet();
     } else {
         TEST_ASSERT_TRUE_MESSAGE(is_setting(word) || is_fact(word), word);
     }
-}
-
-static void tell_row(const row_t *row)
-{
-    taken = 0;
-    row_tell(row->steps, tell);
 }
 
 static const row_t rows[] IN_FLASH = {
@@ -476,7 +588,7 @@ static const row_t rows[] IN_FLASH = {
         ">0B +10 >40 @booting forget +2490 >0D +100 bytes:0 @idle >0D got:600"),
     ROW(a_reboot_forgets_a_reply_that_is_due, ">90 >40 +5000 bytes:0"),
     ROW(losing_power_cuts_a_packet_in_the_middle,
-        "scan:1 inside power:0 +5000 bytes:0 @off power:1 @booting +2500 @idle >0D got:600"),
+        "scan:1 inside forget power:0 +5000 bytes:0 @off power:1 @booting +2500 @idle >0D got:600"),
     ROW(commands_wait_for_a_late_one_and_keep_their_order,
         "spoil:command:late700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
         "=A55A0400000004B2020000 end"),
@@ -523,14 +635,14 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_reboot_at_a_reply_forgets_the_step,
         "spoil:reply:reboots >0B +100 bytes:0 +5000 >0D +1000 hz:600 bytes:11"),
     ROW(a_silent_stream_goes_on_afterwards,
-        "spoil:start:silent800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+        "spoil:start:silent800 >60 spoilt_once +30 forget +760 bytes:0 +1000 packets>90"),
     ROW(a_late_start_packet_delays_the_stream,
-        "spoil:start:late800 >60 spoilt +30 forget +760 bytes:0 +1000 packets>90"),
+        "spoil:start:late800 >60 spoilt_once +30 forget +760 bytes:0 +1000 packets>90"),
 };
 
 void test_the_simulated_lidar(void)
 {
-    run_rows(rows, tell_row);
+    tell_rows(rows, tell);
 }
 
 /* ---- The stream ---- */
@@ -568,21 +680,22 @@ void test_bytes_never_come_faster_than_the_line(void)
     send(0x60);
     for (uint32_t i = 0; i < 30000; i++) {
         now += 100;
-        TEST_ASSERT_TRUE(sim_transmit(&sim, now, chunk, sizeof chunk) <= 3);
+        TEST_ASSERT_TRUE(sim_link_read(&wire, now, chunk, sizeof chunk) <= 3);
     }
 }
 
-/* 5 s in steps of 1 ms, and at once, in portions of this size. */
+static uint8_t other[STREAM_MAX];
+
+/* 5 s by a faultless wire in steps of 1 ms, and without it at once, in portions of this size. */
 static void expect_the_same_bytes_by(size_t portion)
 {
-    static uint8_t other[STREAM_MAX];
+    static const uint8_t start[2] = {0xA5, 0x60};
     size_t other_size = 0;
     size_t more;
     send(0x60);
     run_ms(5000);
     sim_init(&sim, &config);
-    now = 0;
-    send(0x60);
+    sim_receive(&sim, start, 2, 0);
     do {
         more = sim_transmit(&sim, 5 * SECOND, other + other_size, portion);
         other_size += more;
@@ -798,9 +911,9 @@ void test_the_observer_gets_commands_and_modes(void)
 /* 500 ms are 50 packets; the line's queue holds 16. */
 void test_frames_that_are_not_taken_in_time_are_lost_and_counted(void)
 {
+    static const uint8_t stop[2] = {0xA5, 0x65};
     scan_seconds(1);
-    now += 500000;
-    send(0x65);
+    sim_receive(&sim, stop, 2, now + 500000);
     TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
 }
 
@@ -823,4 +936,113 @@ void test_no_two_marks_are_equal_and_none_is_a_data_fault(void)
     }
     TEST_ASSERT_TRUE(counts.points > 79000);
     TEST_ASSERT_EQUAL_HEX8(0, sim_health(&sim));
+}
+
+/* ---- The wire ---- */
+
+/* 60 s are about 780,000 bytes and 6400 packets. */
+static const row_t wires[] IN_FLASH = {
+    ROW(without_faults_every_packet_is_intact, ">60 +10000 truth spoilt:0 faulty:0 untold:0"),
+    ROW(dropped_bytes_cost_the_packets_they_were_in,
+        "drop:1000 >60 +60000 begun.drop>679 begun.drop<881 truth intact>5459 intact<5861 "
+        "unaccounted:0"),
+    ROW(flipped_bits_cost_the_packets_they_were_in,
+        "flip:1000 >60 +60000 begun.flip>679 begun.flip<881 truth unaccounted:0"),
+    ROW(inserted_bytes_cost_only_packets_that_they_split,
+        "insert:1000 >60 +60000 begun.insert>679 begun.insert<881 truth unaccounted:0"),
+    ROW(bursts_spoil_the_packets_they_touch,
+        "burst:500 >60 +60000 begun.burst>79 begun.burst<161 truth spoilt>0 unaccounted:0"),
+    ROW(a_cut_loses_the_rest_of_one_packet,
+        "cut:500 >60 +60000 begun.cut>79 begun.cut<161 truth unexplained<2 unaccounted>0"),
+    ROW(a_stall_makes_bytes_late_but_loses_none,
+        "stall:1000 >60 +60000 begun.stall>34 begun.stall<86 calm +1000 truth spoilt:0 "
+        "unaccounted:0"),
+    ROW(nothing_comes_during_a_stall_and_then_it_comes_at_the_lines_speed,
+        ">60 +3000 force:stall:100 mark +100 new:0 50( mark +1 new>21 new<25 ) +1000 "
+        "unaccounted:0"),
+    ROW(a_stall_while_the_backlog_drains_holds_the_rest_back,
+        ">60 +3000 force:stall:100 +110 force:stall:50 mark +50 new:0 +1000 unaccounted:0 truth"),
+    ROW(garbling_spoils_every_byte_while_it_lasts,
+        ">60 +3000 force:garble:500 faulty:1 +2000 faulty:0 last_fault:3500000 spoilt>45 spoilt<63 "
+        "truth"),
+    ROW(unplugging_silences_the_line_and_resets_the_device,
+        ">60 +3000 force:unplug:1000 mark +500 @off >60 +3100 new:0 @idle >0D +10 new:11"),
+    ROW(a_packet_cut_by_unplugging_is_reported_as_hit,
+        ">60 +3000 inside force:unplug:1000 latest_intact:0 truth"),
+    ROW(a_packet_cut_by_a_reboot_is_reported_as_hit,
+        ">60 +3000 inside >40 +3000 >60 +1000 truth spoilt:1"),
+    ROW(a_packet_cut_without_the_wires_knowledge_is_reported_as_hit,
+        ">60 +3000 inside fails:300 +100 latest_intact:0 truth"),
+    ROW(unplugging_ends_a_burst_and_a_cut_under_way,
+        ">60 +3000 force:burst:5000 force:cut:0 +1 force:burst:5000 force:unplug:1000 +2000 "
+        "faulty:0 begun.burst:1 ended.burst:1 ended.cut:1"),
+    ROW(a_random_loss_of_power_ends_by_itself,
+        "unplug:5000 60( >60 +1000 ) begun.unplug>2 begun.unplug<16 truth"),
+    ROW(faults_of_bytes_can_be_forced_one_at_a_time,
+        ">60 +3000 force:drop:0 force:cut:0 +1000 ended.drop:1 ended.cut:1 spoilt<3 truth"),
+    ROW(all_kinds_of_faults_together_are_reported_correctly,
+        "drop:2000 flip:2000 insert:2000 burst:2000 stall:2000 cut:2000 garble:2000 unplug:20000 "
+        "180( >60 +1000 ) begun.drop>5 begun.flip>5 begun.insert>5 begun.burst>5 "
+        "begun.stall>5 begun.cut>5 begun.garble>5 begun.unplug>5 calm +6000 truth"),
+    ROW(a_calmed_wire_has_no_more_faults, "flip:1000 >60 +10000 calm forget +10000 begun.flip:0"),
+};
+
+void test_the_wire(void)
+{
+    tell_rows(wires, tell);
+}
+
+/* Flips the first byte of a frame: LastCRC before a start packet, otherwise the header. */
+void test_a_spoiled_last_crc_does_not_hit_the_start_packet(void)
+{
+    unsigned starts = 0;
+    send(0x60);
+    run_ms(3000);
+    for (int i = 0; i < 200; i++) {
+        while (wire.packet_open) {
+            run_until(now + 20u);
+        }
+        const size_t before = fate_count;
+        sim_link_force(&wire, SIM_LINK_FLIP, 0, now);
+        while (fate_count == before) {
+            run_until(now + 20u);
+        }
+        TEST_ASSERT_EQUAL(fates[before].packet.sent.starts_revolution, fates[before].packet.intact);
+        starts += fates[before].packet.intact ? 1u : 0u;
+    }
+    TEST_ASSERT_TRUE(starts > 5);
+}
+
+void test_the_same_seed_gives_the_same_faults_whatever_the_steps(void)
+{
+    wire_config.mean_gap[SIM_LINK_DROP] = 1000;
+    wire_config.mean_gap[SIM_LINK_STALL] = 500;
+    wire_config.mean_gap[SIM_LINK_GARBLE] = 3000;
+    power_up();
+    send(0x60);
+    run_ms(10000);
+    memcpy(other, stream, size);
+    const size_t other_size = size;
+    power_up();
+    send(0x60);
+    run_until(10 * SECOND);
+    TEST_ASSERT_TRUE(size > 100000);
+    TEST_ASSERT_EQUAL_size_t(other_size, size);
+    TEST_ASSERT_EQUAL_MEMORY(other, stream, size);
+}
+
+void test_the_next_event_is_never_later_than_the_next_byte(void)
+{
+    wire_config.mean_gap[SIM_LINK_STALL] = 200;
+    power_up();
+    send(0x60);
+    run_ms(3000);
+    for (int i = 0; i < 20000; i++) {
+        const uint64_t next = sim_link_next_us(&wire);
+        if (next > now + 1u) {
+            TEST_ASSERT_EQUAL_size_t(0, sim_link_read(&wire, next - 1u, stream, 100));
+        }
+        now = next > now ? next : now + 1u;
+        sim_link_read(&wire, now, stream, 100);
+    }
 }
