@@ -96,7 +96,7 @@ void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config
 
 void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer)
 {
-    static const sim_link_observer_t nobody = {NULL, NULL, NULL};
+    static const sim_link_observer_t nobody = {0};
     link->observer = observer == NULL ? nobody : *observer;
 }
 
@@ -188,6 +188,11 @@ static void count_burst_down(sim_link_t *link, uint64_t at_us)
     }
 }
 
+static bool is_asked_for(const sim_link_t *link, const sim_run_t *run, size_t i)
+{
+    return link->observer.loses != NULL && link->observer.loses(link->observer.context, run, i);
+}
+
 /* LastCRC comes before a start packet in the same frame, but is not part of the packet. */
 static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
 {
@@ -205,7 +210,8 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
     if (link->burst_left > 0u || link->garbling) {
         byte = spoiled(link, run->bytes[i]);
     }
-    if (meets(link, SIM_LINK_DROP, at_us) || place >= link->cut_from) {
+    if (meets(link, SIM_LINK_DROP, at_us) || place >= link->cut_from ||
+        is_asked_for(link, run, i)) {
         link->packet.intact = link->packet.intact && !in_packet;
     } else {
         link->packet.intact = link->packet.intact && (!in_packet || byte == run->bytes[i]);
@@ -217,8 +223,8 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
 
 static bool is_safe(const sim_link_t *link, const sim_run_t *run)
 {
-    return link->burst_left == 0u && !link->garbling && link->cut_from == SIZE_MAX &&
-           link->passed + run->length <= link->nearest_byte;
+    return link->observer.loses == NULL && link->burst_left == 0u && !link->garbling &&
+           link->cut_from == SIZE_MAX && link->passed + run->length <= link->nearest_byte;
 }
 
 static void begin_frame(sim_link_t *link, const sim_run_t *run)

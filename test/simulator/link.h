@@ -57,6 +57,8 @@ typedef struct {
     /* Called twice per fault: when it begins and when it ends (at once for single bytes). Being
      * unplugged ends when power returns: the device has yet to boot. */
     void (*on_fault)(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us);
+    /* Whether byte `i` of the run is lost, besides the faults. Called once for each byte. */
+    bool (*loses)(void *context, const sim_run_t *run, size_t i);
 } sim_link_observer_t;
 
 typedef struct {

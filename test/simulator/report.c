@@ -88,7 +88,8 @@ static void observe(report_t *report, sim_t *sim, sim_link_t *link)
 {
     const sim_observer_t device_observer = {
         .context = report, .on_command = log_command, .on_mode = log_mode};
-    const sim_link_observer_t link_observer = {report, write_truth, log_fault};
+    const sim_link_observer_t link_observer = {
+        .context = report, .on_packet = write_truth, .on_fault = log_fault};
 
     if (report->log != NULL) {
         sim_observe(sim, &device_observer);

@@ -431,7 +431,7 @@ static bool is_busy(bed_t *bed)
 void bed_step(bed_t *bed)
 {
     empty_outbox(bed);
-    bed->now_us += bed->poll_ms * 1000u;
+    bed->now_us += bed->poll_ms * 1000u + bed->later_us;
     carry_bytes(bed);
     if (bed->held != NULL) {
         read_held(bed);

@@ -36,7 +36,8 @@ typedef struct {
 
 struct bed {
     /* To be set between bed_prepare() and bed_init(). */
-    uint32_t poll_ms;     /* Between two rounds of polls. */
+    uint32_t poll_ms;     /* Between two rounds of polls, */
+    uint32_t later_us;    /* and this much more. */
     uint32_t write_max;   /* Bytes that the port takes per call. 0: all. */
     uint32_t work_ms;     /* What the program does with each scan takes this long. */
     uint32_t flip_one_in; /* One in this many bytes from the lidar is damaged. 0: none. */

@@ -11,7 +11,7 @@ set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
 tmini_add_unit_test(test_stamps
     SOURCES test_stamps.c
-    LIBRARIES tmini_test_support)
+    LIBRARIES tmini_bed)
 
 # Programs as users write them, at every moment at which power may come or fail.
 tmini_add_unit_test(test_programs

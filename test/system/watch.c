@@ -64,7 +64,8 @@ static void note_packet(void *context, const sim_link_packet_t *packet)
 void watch_begin(bed_t *bed)
 {
     watch_t *const watch = bed->watch;
-    const sim_link_observer_t observer = {.context = watch, .on_packet = note_packet};
+    const sim_link_observer_t observer = {
+        .context = watch, .on_packet = note_packet, .loses = watch->loses};
 
     sim_judge_begin(&watch->judge);
     sim_link_init(&watch->link, &bed->sim, &watch->line);

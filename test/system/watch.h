@@ -72,6 +72,7 @@ typedef struct {
     /* To be set before bed_init(). */
     sim_link_config_t line;
     bool may_lose; /* Packets: the ring is too small, or the program too slow. */
+    bool (*loses)(void *context, const sim_run_t *run, size_t i); /* As sim_link_observer_t. */
 
     sim_link_t link;
     sim_judge_t judge;

@@ -9,7 +9,7 @@
  * Accuracy. start_ms and end_ms are the arrival times of a scan's start packet and of the next one,
  * corrected for the bytes that came after them. They are later than the measurement: by up to 8 ms
  * if you poll every 1 ms (a start packet waits until the packet before it has been sent), and by up
- * to 11 ms if you poll every 10 or 38 ms (where packets are lost, 12 and 24 ms). Add the time that
+ * to 11 ms if you poll every 10 or 38 ms (where packets are lost, 13 and 24 ms). Add the time that
  * bytes wait in a UART's FIFO, a task's queue or a USB adapter, or in memory before DMA's position
  * is published: some milliseconds.
  * Within a scan, or a part of one, the times of points are accurate to 1.5 ms at 6 Hz and 1 ms at
