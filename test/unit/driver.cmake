@@ -27,10 +27,8 @@ if(TARGET test_line)
 endif()
 
 # The driver with a lidar that turns (turns.h), on a port that records the commands.
-foreach(test test_honest_scans test_real_bytes)
-    tmini_add_unit_test(${test} SOURCES ${test}.c ../support/turns.c
-        LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
-endforeach()
+tmini_add_unit_test(test_honest_scans SOURCES test_honest_scans.c ../support/turns.c
+    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
 
 # The same, with the library compiled again with an atomic header that calls the test at each access
 # of an index.

@@ -52,7 +52,7 @@ static void open_packet(const uint8_t *packet, size_t size)
 
 /* Words of the rows:
  *
- *     start manual    these packets come (known_packets.h)
+ *     start manual    these packets come (known_packets.h); pro-start …: see below
  *     P4:0,2          a packet of 4 samples from this angle to that, each as stream_sample() says
  *     x:64E56F        a packet with these bytes as samples, 100 sixty-fourths of a degree apart
  *     blind:255       a packet of 255 samples without a distance
@@ -61,6 +61,52 @@ static void open_packet(const uint8_t *packet, size_t size)
  *     @3:640,1021,197,3       angle, distance, intensity and flag of the sample with this index
  *     none:19         there is no sample with this index
  *     count:19 …      see tell_word() */
+
+/* The same of a T-mini Pro at 9.9 Hz (model 150, firmware 1.0), the packets of the tests of the public
+ * project tier4/ydlidar_driver: only values were taken. Each sample is flagged (section 9.9), and point
+ * packets have CT information. */
+static const uint8_t pro_start[] = {0xAA, 0x55, 0xC7, 0x01, 0x01, 0x15, 0x01,
+                                    0x15, 0x1B, 0x56, 0x14, 0x62, 0x02};
+static const uint8_t pro_points[] = {
+    0xAA, 0x55, 0xB0, 0x27, 0xE3, 0x28, 0xF3, 0x39, 0x0E, 0x61, 0x79, 0xB6, 0x05, 0x6F, 0x4E, 0x06,
+    0x61, 0x06, 0x06, 0x7A, 0x9A, 0x02, 0x9E, 0x5E, 0x02, 0xA6, 0x0A, 0x02, 0xA7, 0xE6, 0x01, 0xAE,
+    0xD6, 0x01, 0xBA, 0xD6, 0x01, 0xB8, 0xD2, 0x01, 0xB2, 0xD6, 0x01, 0xBD, 0xD2, 0x01, 0xDF, 0xDA,
+    0x01, 0xE1, 0xDA, 0x01, 0xDF, 0xDA, 0x01, 0xDC, 0xDE, 0x01, 0xDE, 0xDE, 0x01, 0xD8, 0xE2, 0x01,
+    0xD4, 0xDE, 0x01, 0xBA, 0xDE, 0x01, 0x84, 0xDF, 0x01, 0x2F, 0xAB, 0x01, 0x17, 0xEE, 0x01, 0x0F,
+    0x22, 0x02, 0x0C, 0x7E, 0x02, 0x0A, 0x02, 0x00, 0x0C, 0x9E, 0x02, 0x16, 0xA6, 0x02, 0x21, 0xA2,
+    0x02, 0x3A, 0x32, 0x03, 0x55, 0x4E, 0x0A, 0x87, 0x46, 0x0A, 0x85, 0x5A, 0x0A, 0x8A, 0x6E, 0x0A,
+    0x84, 0x9A, 0x0A, 0x7E, 0xCE, 0x0A, 0x4E, 0x7E, 0x04, 0x51, 0x6E, 0x03, 0x66, 0xA6, 0x02};
+static const uint8_t pro_full[] = {
+    0xAA, 0x55, 0x24, 0x28, 0xF5, 0x4C, 0x85, 0x5E, 0x9D, 0x70, 0xCE, 0xE2, 0x07, 0xBC, 0xFA,
+    0x07, 0xCC, 0xB6, 0x07, 0xC8, 0xB6, 0x07, 0xC4, 0xBA, 0x07, 0xCB, 0xCA, 0x07, 0xC8, 0xAE,
+    0x09, 0xC5, 0x9E, 0x09, 0xC7, 0x9E, 0x09, 0xC2, 0x9E, 0x09, 0xC1, 0x92, 0x09, 0xC0, 0x8A,
+    0x09, 0xC1, 0x86, 0x09, 0xBE, 0x86, 0x09, 0xC5, 0x86, 0x09, 0xC3, 0x8A, 0x09, 0xBC, 0x8A,
+    0x09, 0xC6, 0x8A, 0x09, 0xC6, 0x8A, 0x09, 0xC2, 0x8E, 0x09, 0xC5, 0x8E, 0x09, 0xC3, 0x92,
+    0x09, 0xC4, 0xAA, 0x09, 0xC9, 0xB2, 0x09, 0xC9, 0xBA, 0x09, 0xC5, 0xC2, 0x09, 0xC9, 0xCE,
+    0x09, 0xBF, 0xCE, 0x09, 0xBE, 0xCE, 0x09, 0xBA, 0xCE, 0x09, 0xBE, 0xD6, 0x09, 0xBB, 0xD6,
+    0x09, 0xBF, 0xE2, 0x09, 0xBB, 0xF2, 0x09, 0xC1, 0x0A, 0x0A, 0xBF, 0x1A, 0x0A, 0xB9, 0x1E,
+    0x0A, 0xAA, 0x22, 0x0A, 0x9E, 0x2A, 0x0A, 0xCB, 0x7A, 0x15};
+
+static const struct {
+    const char *name;
+    const uint8_t *bytes;
+    size_t size;
+} known[] = {
+    {"start", start_packet, sizeof start_packet}, {"manual", manual_packet, sizeof manual_packet},
+    {"pro-start", pro_start, sizeof pro_start},   {"pro-points", pro_points, sizeof pro_points},
+    {"pro-full", pro_full, sizeof pro_full},
+};
+
+static bool open_known(const char *word)
+{
+    for (unsigned i = 0; i < sizeof known / sizeof known[0]; i++) {
+        if (row_is(word, known[i].name)) {
+            open_packet(known[i].bytes, known[i].size);
+            return true;
+        }
+    }
+    return false;
+}
 
 /* The samples are in `bytes`. */
 static void open_samples(size_t count)
@@ -119,10 +165,6 @@ static void tell_word(char *word)
         open_angles(word);
     } else if (word[0] == '<') {
         receiver_feed(&receiver, bytes, row_bytes(word + 1, bytes));
-    } else if (row_is(word, "start")) {
-        open_packet(start_packet, sizeof start_packet);
-    } else if (row_is(word, "manual")) {
-        open_packet(manual_packet, sizeof manual_packet);
     } else if (row_is(word, "x")) {
         open_samples(row_bytes(word + 2, &bytes[10]) / 3);
     } else if (row_is(word, "blind")) {
@@ -137,7 +179,7 @@ static void tell_word(char *word)
     } else if (row_is(word, "none")) {
         TEST_ASSERT_FALSE_MESSAGE(tmini_packet_point(packet, row_number(word), &none), word);
     } else {
-        TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
+        TEST_ASSERT_TRUE_MESSAGE(open_known(word) || row_expects(word, numbers), word);
     }
 }
 
@@ -151,6 +193,13 @@ static const row_t rows[] IN_FLASH = {
         "<112233 start gap:3 skipped:0x33 manual gap:0"),
     ROW(header_angles_of_360_degrees_and_more_are_reduced, /* The field's largest: 32767. */
         "P2:23040,32767 first:0 last:9727 P2:23039,23041 first:23039 last:1"),
+    ROW(a_t_mini_pros_start_packet_is_at_42_degrees,
+        "pro-start is-start:1 ct:0xC7 @0:2688,152,20,2"),
+    ROW(a_t_mini_pros_point_packet_has_39_flagged_samples, /* Index 25: 5233 + 25 * 2184 / 38. */
+        "pro-points count:39 is-start:0 ct:0xB0 @0:5233,365,121,2 @25:6670,0,10,2 "
+        "@38:7417,169,102,2"),
+    ROW(a_t_mini_pros_full_packet_has_40_samples, /* From 153.91 to 189.03 degrees. */
+        "pro-full count:40 is-start:0 ct:0x24 @0:9850,504,206,2 @39:12098,1374,203,2"),
     /* ---- Samples ---- */
     ROW(a_sample_is_intensity_distance_and_flag, /* Section 5's example; the extremes. */
         "x:64E56FFFFFFF000400800301 @0:0,7161,100,1 @1:100,16383,255,3 @2:200,1,0,0 "
