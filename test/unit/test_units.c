@@ -55,12 +55,13 @@ void test_360_ranges_are_a_degree_apart_from_minus_pi(void)
 
 void test_ranges_in_metres_name_what_is_missing_as_the_caller_wishes(void)
 {
-    static const uint16_t ranges_mm[3] = {1500, 0, 250};
-    float ranges_m[3];
+    static const uint16_t ranges_mm[4] = {1500, 0, 250, 100};
+    float ranges_m[4] = {0};
     tmini_ranges_metres(ranges_mm, 3, -1.0f, ranges_m);
     expect_near(1.5f, ranges_m[0]);
     TEST_ASSERT_TRUE(ranges_m[1] == -1.0f);
     expect_near(0.25f, ranges_m[2]);
+    TEST_ASSERT_TRUE(ranges_m[3] == 0.0f);
 }
 
 void test_a_scan_takes_its_period_and_a_bin_its_share_backwards(void)
