@@ -10,23 +10,6 @@
 #define HALL_MM 4000.0
 #define RADIANS (3.14159265358979323846 / 180.0)
 
-static int write_port(void *context, const uint8_t *bytes, size_t count)
-{
-    rover_t *const rover = context;
-    sim_receive(&rover->sim, bytes, count, rover->now_us);
-    return (int)count;
-}
-
-uint32_t rover_now_ms(const rover_t *rover)
-{
-    return (uint32_t)(rover->now_us / 1000u);
-}
-
-static uint32_t now_ms(void *context)
-{
-    return rover_now_ms(context);
-}
-
 /* The step before the fields. */
 static void disturb(const void *data, tmini_scan_t *scan)
 {
@@ -49,31 +32,23 @@ static void need(bool is_so, const char *what)
 void rover_init(rover_t *rover, const rover_config_t *config, const tmini_fields_t *fields)
 {
     static rover_t *self; /* One rover at a time: a step's data is constant. */
+    bed_t *const bed = &rover->bed;
     sim_config_t sim = sim_default_config();
     self = rover;
     sim.seed = config->seed;
     rover->config = *config;
     rover->fields = fields;
-    rover->now_us = 0;
-    rover->scans = 0;
-    rover->port = (tmini_port_t){.write = write_port, .now_ms = now_ms};
     rover->list[0] = (tmini_one_step_t){disturb, &self};
     rover->list[1] = (tmini_one_step_t){tmini_fields_step, fields};
     rover->steps = (tmini_steps_t){rover->list, 2};
     random_seed(&rover->random, config->seed + 1);
-    sim_init(&rover->sim, &sim);
+    bed_prepare(bed);
+    bed->config.frequency_chz = config->frequency_chz;
+    bed->config.step = tmini_steps_step;
+    bed->config.step_data = &rover->steps;
     need(tmini_fields_init(fields) == TMINI_OK, "these fields are refused");
-    const tmini_config_t driver = {.port = &rover->port,
-                                   .port_context = rover,
-                                   .rx_buffer = rover->rx,
-                                   .rx_size = sizeof rover->rx,
-                                   .points = rover->points,
-                                   .max_points = TMINI_SCAN_POINTS_TYPICAL,
-                                   .frequency_chz = config->frequency_chz,
-                                   .step = tmini_steps_step,
-                                   .step_data = &rover->steps};
-    need(tmini_init(&rover->lidar, &driver) == TMINI_OK, "the driver refuses its configuration");
-    need(tmini_start(&rover->lidar) == TMINI_OK, "the driver does not start");
+    need(bed_init(bed, &sim), "the driver refuses its configuration");
+    need(bed_start(bed) == TMINI_OK, "the driver does not start");
 }
 
 static double cosines[SIM_SCENE_ENTRIES]; /* Of the entries' angles: the scene is often made. */
@@ -109,22 +84,21 @@ void rover_furnish(rover_t *rover, const rover_hall_t *hall)
     }
     for (unsigned i = 0; i < SIM_SCENE_ENTRIES; i++) {
         const double distance = hall_at(hall, i);
-        rover->sim.scene.distance_mm[i] = (uint16_t)(distance < 50 ? 0 : lround(distance));
+        rover->bed.sim.scene.distance_mm[i] = (uint16_t)(distance < 50 ? 0 : lround(distance));
     }
+}
+
+uint32_t rover_now_ms(rover_t *rover)
+{
+    return rover->bed.port.now_ms(&rover->bed);
 }
 
 bool rover_pass(rover_t *rover)
 {
-    uint8_t bytes[256];
-    const uint32_t before = rover->scans;
-    rover->now_us += 1000;
-    const size_t count = sim_transmit(&rover->sim, rover->now_us, bytes, sizeof bytes);
-    need(tmini_feed(&rover->lidar, bytes, count) == count, "the ring is full");
-    for (tmini_event_t event; (event = tmini_poll(&rover->lidar)) != TMINI_EVENT_NONE;) {
-        rover->scans += event == TMINI_EVENT_SCAN;
-    }
-    if (tmini_faults(&rover->lidar) != 0) {
+    const uint32_t scans = rover->bed.events[TMINI_EVENT_SCAN];
+    bed_step(&rover->bed);
+    if (tmini_faults(&rover->bed.lidar) != 0) {
         tmini_fields_clear(rover->fields);
     }
-    return rover->scans != before;
+    return rover->bed.events[TMINI_EVENT_SCAN] != scans;
 }

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A robot with the driver, fields and the simulated lidar, in a hall of 8 m by 8 m, in virtual
- * time. Some points may be random, as in dust or beside other lidars. */
+/* A robot on the bed (test/system/bed.h), with fields, in a hall of 8 m by 8 m. Some points may be random, as in dust or beside other lidars. */
 
 #ifndef ROVER_H
 #define ROVER_H
 
-#include "simulator.h"
+#include "bed.h"
 
-#include "tmini/tmini.h"
 #include "tmini/tmini_fields.h"
 #include "tmini/tmini_steps.h"
 
@@ -29,17 +27,11 @@ typedef struct {
 
 typedef struct {
     rover_config_t config;
-    sim_t sim;
-    tmini_t lidar;
-    tmini_port_t port;
+    bed_t bed;
     random_t random;
-    uint64_t now_us;
     tmini_one_step_t list[2];
     tmini_steps_t steps;
     const tmini_fields_t *fields;
-    uint32_t scans;
-    uint8_t rx[1024];
-    tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 } rover_t;
 
 /* Sets up fields and driver, and starts the lidar. It stays the caller's. */
@@ -50,6 +42,7 @@ void rover_furnish(rover_t *rover, const rover_hall_t *hall);
 /* A millisecond passes. Returns true if a scan has come. */
 bool rover_pass(rover_t *rover);
 
-uint32_t rover_now_ms(const rover_t *rover);
+/* By the driver's clock. */
+uint32_t rover_now_ms(rover_t *rover);
 
 #endif
