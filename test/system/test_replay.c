@@ -6,6 +6,7 @@
  * and, for the real unit, from the recording's description; none from the library. */
 
 #include "receiver.h"
+#include "rows.h"
 
 #include "tmini/parts/tmini_decoder.h"
 #include "unity.h"
@@ -30,6 +31,7 @@ typedef struct {
     unsigned points;
     unsigned trusted; /* Revolutions whose CT information was confirmed. */
     unsigned scans;
+    unsigned named; /* Scans that the row has named. */
     tmini_scan_t scan[SCANS_MAX];
 } replay_t;
 
@@ -96,125 +98,120 @@ static void replay_in_chunks(size_t chunk)
     while (receiver_next_at_end(&receiver) == TMINI_FRAME_PACKET) {
         handle_packet((uint32_t)(size / BYTES_PER_MS));
     }
+    TEST_ASSERT_EQUAL_UINT32(0, receiver_counters(&receiver).bytes_overrun);
 }
 
-static void expect_counts(uint32_t packets, unsigned starts, unsigned point_count, uint32_t skipped,
-                          uint32_t checksum_errors)
+static void load_real(void)
+{
+    if (!load(REAL_RECORDINGS "t-mini-plus-room.bin")) {
+        TEST_IGNORE_MESSAGE("no recording of a real unit in TMINI_RECORDINGS_DIR");
+    }
+}
+
+static void expect_number(const char *word)
 {
     const tmini_parser_counters_t counters = receiver_counters(&receiver);
-    TEST_ASSERT_EQUAL_UINT32(packets, counters.packets);
-    TEST_ASSERT_EQUAL_UINT(starts, replay.starts);
-    TEST_ASSERT_EQUAL_UINT(point_count, replay.points);
-    TEST_ASSERT_EQUAL_UINT32(skipped, counters.bytes_skipped);
-    TEST_ASSERT_EQUAL_UINT32(checksum_errors, counters.checksum_errors);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-}
-
-/* All scans are complete and have these points, packets and frequencies in 0.1 Hz. */
-static void expect_scans(unsigned count, const uint16_t *point_counts, const uint8_t *packets,
-                         const uint8_t *frequencies)
-{
-    TEST_ASSERT_EQUAL_UINT(count, replay.scans);
-    for (unsigned i = 0; i < count; i++) {
-        TEST_ASSERT_EQUAL_UINT16(point_counts[i], replay.scan[i].count);
-        TEST_ASSERT_EQUAL_UINT16(packets[i], replay.scan[i].packets);
-        TEST_ASSERT_EQUAL_UINT16(frequencies[i] * 10, replay.scan[i].frequency_chz);
-        TEST_ASSERT_TRUE(replay.scan[i].complete);
-        TEST_ASSERT_EQUAL_UINT16(0, replay.scan[i].gaps);
-        TEST_ASSERT_EQUAL_UINT16(0, replay.scan[i].dropped);
-        TEST_ASSERT_EQUAL_UINT16(0, replay.scan[i].checksum_errors);
-    }
-}
-
-/* ----------------------------------------------------------------------------- the repository's */
-
-void test_the_manuals_packet_is_replayed(void)
-{
-    load_own("manual-packet.bin");
-    replay_in_chunks(size);
-    expect_counts(1, 0, 19, 0, 0);
-    TEST_ASSERT_EQUAL_UINT(0, replay.scans);
-}
-
-/* Skipped bytes: the start reply, eight LastCRC and the last packet, which is cut. */
-static void expect_six_hertz(void)
-{
-    static const uint16_t counts[8] = {873, 699, 665, 669, 667, 666, 667, 669};
-    static const uint8_t packets[8] = {23, 19, 18, 18, 18, 18, 18, 18};
-    static const uint8_t frequencies[8] = {46, 57, 60, 60, 60, 60, 60, 60};
-    expect_counts(190, 9, 7133, 101, 0);
-    TEST_ASSERT_EQUAL_UINT(26, replay.packets_before_first);
-    expect_scans(8, counts, packets, frequencies);
-    TEST_ASSERT_EQUAL_UINT(8, replay.trusted);
-}
-
-void test_a_recording_at_6_hz_is_replayed_whatever_the_chunks(void)
-{
-    static const size_t chunks[] = {1, 2, 13, 64, 130, 131, 512, 894};
-    load_own("sim-6hz.bin");
-    for (size_t i = 0; i < sizeof chunks / sizeof chunks[0]; i++) {
-        replay_in_chunks(chunks[i]);
-        expect_six_hertz();
-    }
-}
-
-void test_a_recording_at_6_hz_has_all_ct_information(void)
-{
     tmini_ct_info_t info;
-    load_own("sim-6hz.bin");
-    replay_in_chunks(64);
     tmini_ct_read(&decoder.ct, &info);
-    TEST_ASSERT_TRUE((info.known & TMINI_KNOWN_SERIAL) != 0);
-    TEST_ASSERT_EQUAL_UINT16(2026, info.year);
-    TEST_ASSERT_EQUAL_UINT8(3, info.month);
-    TEST_ASSERT_EQUAL_UINT8(17, info.day);
-    TEST_ASSERT_EQUAL_UINT32(12345, info.number);
-    TEST_ASSERT_EQUAL_UINT8(1, info.firmware_major);
-    TEST_ASSERT_EQUAL_UINT8(2, info.firmware_minor);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&decoder.ct));
+    const row_number_t numbers[] = {
+        {"packets", counters.packets},
+        {"starts", replay.starts},
+        {"points", replay.points},
+        {"skipped", counters.bytes_skipped},
+        {"errors", counters.checksum_errors},
+        {"before", replay.packets_before_first},
+        {"trusted", replay.trusted},
+        {"scans", replay.scans},
+        {"faults", tmini_ct_faults(&decoder.ct)},
+        {"has_serial", (info.known & TMINI_KNOWN_SERIAL) != 0 ? 1 : 0},
+        {"year", info.year},
+        {"month", info.month},
+        {"day", info.day},
+        {"number", info.number},
+        {"major", info.firmware_major},
+        {"minor", info.firmware_minor},
+    };
+    TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
 }
 
-void test_a_recording_at_10_hz_of_a_plain_unit_has_scans_but_no_ct_information(void)
+/* The next scan is complete and has these points, packets and frequency in 0.1 Hz; */
+static void expect_scan(unsigned count, unsigned packets, unsigned dhz)
 {
-    static const uint16_t counts[10] = {725, 561, 475, 419, 402, 401, 400, 399, 402, 401};
-    static const uint8_t packets[10] = {20, 15, 13, 12, 12, 11, 11, 11, 12, 11};
-    static const uint8_t frequencies[10] = {55, 71, 84, 95, 100, 100, 100, 100, 100, 100};
-    load_own("sim-10hz-plain.bin");
-    replay_in_chunks(100);
-    expect_counts(143, 11, 5132, 99, 0);
-    expect_scans(10, counts, packets, frequencies);
-    TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&decoder.ct));
+    const tmini_scan_t *const scan = &replay.scan[replay.named++];
+    TEST_ASSERT_EQUAL_UINT16(count, scan->count);
+    TEST_ASSERT_EQUAL_UINT16(packets, scan->packets);
+    TEST_ASSERT_EQUAL_UINT16(dhz * 10, scan->frequency_chz);
+    TEST_ASSERT_TRUE(scan->complete);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->gaps);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->dropped);
+    TEST_ASSERT_EQUAL_UINT16(0, scan->checksum_errors);
 }
 
-void test_a_recording_at_12_hz_has_scans_and_the_beginning_of_the_ct_information(void)
+/* or it is a part, with these gaps. */
+static void expect_part(unsigned gaps)
 {
-    static const uint16_t counts[12] = {553, 457, 398, 358, 335, 334, 332, 334, 334, 332, 333, 332};
-    static const uint8_t packets[12] = {15, 13, 11, 10, 10, 10, 11, 10, 10, 10, 10, 10};
-    static const uint8_t frequencies[12] = {72,  88,  101, 112, 119, 120,
-                                            120, 120, 120, 120, 120, 120};
-    load_own("sim-12hz.bin");
-    replay_in_chunks(100);
-    expect_counts(149, 13, 5149, 19, 0);
-    expect_scans(12, counts, packets, frequencies);
-    TEST_ASSERT_EQUAL_UINT(12, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ct_faults(&decoder.ct));
+    const tmini_scan_t *const scan = &replay.scan[replay.named++];
+    TEST_ASSERT_EQUAL_UINT16(gaps, scan->gaps);
+    TEST_ASSERT_FALSE(scan->complete);
 }
 
-/* 299 packets were sent; each of the 266 that arrived intact is delivered. No revolution arrived
- * intact: each scan has these gaps. */
-void test_on_a_bad_line_every_intact_packet_is_replayed(void)
+/* "file:NAME" or "real"; "by:64": replays it in chunks of 64 bytes; "873/23/46": the next scan;
+ * "part:3"; numbers above. */
+static void tell(char *word)
 {
-    static const uint16_t gaps[14] = {3, 1, 2, 2, 1, 3, 1, 1, 3, 2, 3, 1, 3, 1};
-    load_own("sim-6hz-damaged.bin");
-    replay_in_chunks(77);
-    expect_counts(266, 15, 9832, 4214, 32);
-    TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(14, replay.scans);
-    for (unsigned i = 0; i < 14; i++) {
-        TEST_ASSERT_EQUAL_UINT16(gaps[i], replay.scan[i].gaps);
-        TEST_ASSERT_FALSE(replay.scan[i].complete);
+    unsigned count, packets, dhz;
+    if (row_is(word, "file")) {
+        load_own(row_text(word));
+    } else if (row_is(word, "real")) {
+        load_real();
+    } else if (row_is(word, "by")) {
+        replay_in_chunks(row_number(word));
+    } else if (sscanf(word, "%u/%u/%u", &count, &packets, &dhz) == 3) {
+        expect_scan(count, packets, dhz);
+    } else if (row_is(word, "part")) {
+        expect_part(row_number(word));
+    } else {
+        expect_number(word);
     }
+}
+
+/* Of the recording at 6 Hz. Skipped bytes: the start reply, eight LastCRC and the last packet,
+ * which is cut. */
+#define SIX_HERTZ                                                                         \
+    " packets:190 starts:9 points:7133 skipped:101 errors:0 before:26 trusted:8 scans:8 " \
+    "873/23/46 699/19/57 665/18/60 669/18/60 667/18/60 666/18/60 667/18/60 669/18/60 "
+
+static const row_t rows[] IN_FLASH = {
+    ROW(the_manuals_packet_is_replayed,
+        "file:manual-packet.bin by:67 packets:1 starts:0 points:19 skipped:0 errors:0 scans:0"),
+    ROW(a_recording_at_6_hz_is_replayed_whatever_the_chunks,
+        "file:sim-6hz.bin by:1" SIX_HERTZ "by:2" SIX_HERTZ "by:13" SIX_HERTZ "by:64" SIX_HERTZ
+        "by:130" SIX_HERTZ "by:131" SIX_HERTZ "by:512" SIX_HERTZ "by:894" SIX_HERTZ),
+    ROW(a_recording_at_6_hz_has_all_ct_information,
+        "file:sim-6hz.bin by:64 has_serial:1 year:2026 month:3 day:17 number:12345 major:1 minor:2 "
+        "faults:0"),
+    ROW(a_recording_at_10_hz_of_a_plain_unit_has_scans_but_no_ct_information,
+        "file:sim-10hz-plain.bin by:100 packets:143 starts:11 points:5132 skipped:99 errors:0 "
+        "scans:10 725/20/55 561/15/71 475/13/84 419/12/95 402/12/100 401/11/100 400/11/100 "
+        "399/11/100 402/12/100 401/11/100 trusted:0 faults:256"),
+    ROW(a_recording_at_12_hz_has_scans_and_the_beginning_of_the_ct_information,
+        "file:sim-12hz.bin by:100 packets:149 starts:13 points:5149 skipped:19 errors:0 scans:12 "
+        "553/15/72 457/13/88 398/11/101 358/10/112 335/10/119 334/10/120 332/11/120 334/10/120 "
+        "334/10/120 332/10/120 333/10/120 332/10/120 trusted:12 faults:0"),
+    /* 299 packets were sent; each of the 266 that arrived intact is delivered. No revolution
+     * arrived intact. */
+    ROW(on_a_bad_line_every_intact_packet_is_replayed,
+        "file:sim-6hz-damaged.bin by:77 packets:266 starts:15 points:9832 skipped:4214 errors:32 "
+        "trusted:0 scans:14 part:3 part:1 part:2 part:2 part:1 part:3 part:1 part:1 part:3 part:2 "
+        "part:3 part:1 part:3 part:1"),
+    ROW(a_real_units_recording_gives_four_complete_scans,
+        "real by:64 packets:89 starts:5 points:3278 skipped:0 errors:0 before:20 scans:4 624/17/63 "
+        "624/17/64 626/17/65 630/17/64 trusted:0 faults:256"),
+};
+
+void test_recordings(void)
+{
+    tell_rows(rows, tell);
 }
 
 /* ------------------------------------------------------------------------- what was really sent */
@@ -290,27 +287,4 @@ void test_every_sample_is_as_it_was_sent(void)
         load_own(file);
         expect_truth(names[i]);
     }
-}
-
-/* -------------------------------------------------------------------------------- the real unit */
-
-static void load_real(void)
-{
-    if (!load(REAL_RECORDINGS "t-mini-plus-room.bin")) {
-        TEST_IGNORE_MESSAGE("no recording of a real unit in TMINI_RECORDINGS_DIR");
-    }
-}
-
-void test_a_real_units_recording_gives_four_complete_scans(void)
-{
-    static const uint16_t counts[4] = {624, 624, 626, 630};
-    static const uint8_t packets[4] = {17, 17, 17, 17};
-    static const uint8_t frequencies[4] = {63, 64, 65, 64};
-    load_real();
-    replay_in_chunks(64);
-    expect_counts(89, 5, 3278, 0, 0);
-    TEST_ASSERT_EQUAL_UINT(20, replay.packets_before_first);
-    expect_scans(4, counts, packets, frequencies);
-    TEST_ASSERT_EQUAL_UINT(0, replay.trusted);
-    TEST_ASSERT_EQUAL_UINT(TMINI_FAULTS_UNKNOWN, tmini_ct_faults(&decoder.ct));
 }
