@@ -11,38 +11,16 @@
 
 set(CMOCK_ROOT "$ENV{CMOCK_ROOT}" CACHE PATH "Folder of CMock, with Unity in vendor/unity")
 
-function(tmini_run_git out)
-    execute_process(COMMAND ${GIT_EXECUTABLE} ${ARGN} RESULT_VARIABLE status
-        OUTPUT_QUIET ERROR_QUIET)
-    set(${out} ${status} PARENT_SCOPE)
-endfunction()
-
-# Sets OUT to the folder of a downloaded copy; it stays empty if the download fails.
+# Downloads CMock with Unity, once, and sets OUT to its folder.
 function(tmini_download_cmock out)
+    message(STATUS "CMock is not installed: using a download (test/run.sh installs it; "
+        "-DCMOCK_ROOT=DIR names a copy)")
+    include(FetchContent)
     # Release v2.6.0; its submodule is Unity v2.6.1.
-    set(commit 49435d9f3313abb3422252d3d2dc12a7542332ca)
-    set(dir ${CMAKE_BINARY_DIR}/cmock-${commit})
-    set(${out} ${dir} PARENT_SCOPE)
-    if(EXISTS ${dir}/complete)
-        return()
-    endif()
-    message(STATUS "CMock is not installed: downloading it (choose a copy with -DCMOCK_ROOT=DIR)")
-    find_package(Git QUIET)
-    set(status "no git")
-    if(GIT_FOUND)
-        file(REMOVE_RECURSE ${dir})
-        tmini_run_git(status clone --quiet https://github.com/ThrowTheSwitch/CMock.git ${dir})
-    endif()
-    foreach(step "checkout;--quiet;${commit}" "submodule;update;--quiet;--init;vendor/unity")
-        if(status EQUAL 0)
-            tmini_run_git(status -C ${dir} ${step})
-        endif()
-    endforeach()
-    if(status EQUAL 0)
-        file(WRITE ${dir}/complete "")
-    else()
-        set(${out} "" PARENT_SCOPE)
-    endif()
+    FetchContent_Declare(cmock GIT_REPOSITORY https://github.com/ThrowTheSwitch/CMock.git
+        GIT_TAG 49435d9f3313abb3422252d3d2dc12a7542332ca GIT_SUBMODULES vendor/unity)
+    FetchContent_MakeAvailable(cmock)
+    set(${out} ${cmock_SOURCE_DIR} PARENT_SCOPE)
 endfunction()
 
 find_program(TMINI_RUBY ruby)
@@ -58,10 +36,6 @@ elseif(EXISTS /usr/share/cmock/lib/cmock.rb)
     set(TMINI_CMOCK_DIR /usr/share/cmock)
 else()
     tmini_download_cmock(TMINI_CMOCK_DIR)
-    if(NOT TMINI_CMOCK_DIR)
-        message(FATAL_ERROR "The tests need CMock, which is neither installed nor to be "
-            "downloaded. test/run.sh installs what they need; -DCMOCK_ROOT=DIR names a copy.")
-    endif()
 endif()
 set(TMINI_UNITY_DIR ${TMINI_CMOCK_DIR}/vendor/unity)
 
