@@ -10,6 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}) *([^`]*)$")
 HEADING = re.compile(r"^#+ +(.*?) *#*$")
+LINK = re.compile(r"\]\(([^()\s]*)(?:\s+\"[^\"]*\")?\)|^\[[^]]+\]:\s*(\S+)|\b(?:src|href)=\"([^\"]*)\"")
 
 
 def documents(language=""):
@@ -85,3 +86,23 @@ def anchors(path):
             found.append(f"{plain}-{count}" if count else plain)
         found += re.findall(r'<a (?:id|name)="([^"]+)"', line)
     return found
+
+
+def links(path):
+    """The document's links, each as (number of line, target)."""
+    for number, line in parse(path)[1]:
+        for found in LINK.findall(re.sub(r"`[^`]*`", "", line)):
+            yield number, "".join(found)
+
+
+def wrong_link(path, target, root=ROOT):
+    """What is wrong with a link in a document of this folder, or None. Web addresses are not checked."""
+    file, _, anchor = target.partition("#")
+    goal = (path.parent / file).resolve() if file else path
+    if re.match(r"[a-z][a-z0-9+.-]*:", target):
+        return None
+    if not goal.exists():
+        return "no such file"
+    if root not in goal.parents and goal != root:
+        return "leads out of the project"
+    return "no such heading" if anchor and (goal.suffix != ".md" or anchor not in anchors(goal)) else None

@@ -12,11 +12,8 @@ Exit status: 0 no mistake, 1 mistakes, which are printed. Web addresses are not 
 import re
 import sys
 
-from documents import ROOT, anchors, documents, name, parse
+from documents import ROOT, documents, links, name, wrong_link
 
-LINK = re.compile(r"\[(?:[^][]|\[[^]]*\])*\]\(([^()\s]*)(?:\s+\"[^\"]*\")?\)")
-REFERENCE = re.compile(r"^\[[^]]+\]:\s*(\S+)")
-TAG = re.compile(r"<[^>]* (?:src|href)=\"([^\"]*)\"")
 PATH = re.compile(r"(?<![\w/.-])((?:docs|examples|lib|port|test)/[\w./-]*\w)")
 
 # Recordings of real units, which each user has to make.
@@ -24,19 +21,6 @@ NOT_OURS = ("test/recordings/real",)
 
 # A placeholder for a name, such as PLATFORM or X.
 PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]+(?=/|\.|$)")
-
-
-def wrong_link(path, target):
-    """What is wrong with a link, or None."""
-    file, _, anchor = target.partition("#")
-    goal = (path.parent / file).resolve() if file else path
-    if re.match(r"[a-z][a-z0-9+.-]*:", target):
-        return None
-    if not goal.exists():
-        return "no such file"
-    if ROOT not in goal.parents and goal != ROOT:
-        return "leads out of the project"
-    return "no such heading" if anchor and (goal.suffix != ".md" or anchor not in anchors(goal)) else None
 
 
 def wrong_path(path, named):
@@ -50,9 +34,8 @@ def wrong_path(path, named):
 def found_in(paths):
     """All links and paths, each with the check for it."""
     for path in [*documents(), *documents("zh-CN.")]:
-        for number, line in parse(path)[1]:
-            for target in [*LINK.findall(re.sub(r"`[^`]*`", "", line)), *REFERENCE.findall(line), *TAG.findall(line)]:
-                yield path, number, target, wrong_link
+        for number, target in links(path):
+            yield path, number, target, wrong_link
     for path in paths:
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             for named in PATH.findall(re.sub(r"\]\([^)]*\)", "]", line)):

@@ -17,9 +17,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
-from documents import ROOT, anchors, parse  # noqa: E402
-
-LINK = re.compile(r"\]\(([^()\s]+)\)|(?:src|href)=\"([^\"]+)\"")
+from documents import ROOT, links, parse, wrong_link  # noqa: E402
 
 
 def folder_of(archive, work):
@@ -28,24 +26,6 @@ def folder_of(archive, work):
     shutil.unpack_archive(archive, folder)
     inside = list(folder.iterdir())
     return inside[0] if len(inside) == 1 else folder
-
-
-def links(path):
-    for number, line in parse(path)[1]:
-        for match in LINK.finditer(re.sub(r"`[^`]*`", "", line)):
-            yield number, match[1] or match[2]
-
-
-def check_links(folder, path):
-    for number, target in links(path):
-        if re.match(r"https?:", target):
-            continue
-        file, _, anchor = target.partition("#")
-        goal = (path.parent / file).resolve() if file else path
-        if not goal.exists() or folder not in [goal, *goal.parents]:
-            yield f"{path}:{number}: dead link: {target}"
-        elif anchor and anchor not in anchors(goal):
-            yield f"{path}:{number}: no such heading: {target}"
 
 
 def steps(path):
@@ -77,7 +57,9 @@ def check(folder):
     if not (folder / "LICENSE").exists():
         yield f"{folder}: no licence"
     for path in sorted(folder.rglob("*.md")):
-        yield from check_links(folder, path)
+        for number, target in links(path):
+            if wrong := wrong_link(path, target, folder):
+                yield f"{path}:{number}: {wrong}: {target}"
         if path.name != "CHANGELOG.md":
             yield from check_steps(folder, path)
 
