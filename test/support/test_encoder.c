@@ -5,8 +5,13 @@
 
 #include "encoder.h"
 #include "known_packets.h"
+#include "rows.h"
 
 #include "unity.h"
+
+#include <string.h>
+
+static uint8_t out[ENCODE_OTHER_MAX];
 
 /* The manual's packet: distances and flags worked out by hand from S2 and S3. */
 static const encode_sample_t manual_samples[19] = {
@@ -32,13 +37,24 @@ static encode_turn_t a_turn(void)
     return turn;
 }
 
-void setUp(void) {}
+/* `out` has these bytes, in hexadecimal digits, which are as many as were encoded. */
+static void expect_bytes(const char *digits, size_t encoded)
+{
+    uint8_t expected[32];
+    TEST_ASSERT_EQUAL_size_t(row_bytes(digits, expected), encoded);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, encoded);
+}
+
+void setUp(void)
+{
+    memset(out, 0xEE, sizeof out);
+}
+
 void tearDown(void) {}
 
 void test_the_manuals_packet_is_encoded_byte_for_byte(void)
 {
     const encode_packet_t packet = {0x20, 19, 21706, 49, manual_samples};
-    uint8_t out[ENCODE_PACKET_MAX];
     TEST_ASSERT_EQUAL_size_t(67, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(manual_packet, out, 67);
 }
@@ -53,44 +69,30 @@ void test_the_manuals_checksum_is_e85a(void)
  * 54AA ^ 0005 ^ 012C = 5583. */
 void test_packets_of_other_units(void)
 {
-    static const uint8_t two[12] = {0xAA, 0x55, 0x00, 0x01, 0x81, 0x00,
-                                    0x81, 0x00, 0x18, 0x50, 0xB2, 0x04};
-    static const uint8_t four[14] = {0xAA, 0x55, 0x00, 0x01, 0x81, 0x00, 0x81,
-                                     0x00, 0x83, 0x55, 0x05, 0x00, 0x2C, 0x01};
     const encode_sample_t sample = {300, 5, 2};
     const encode_packet_t packet = {0x00, 1, 64, 64, &sample};
-    uint8_t out[ENCODE_OTHER_MAX];
-    TEST_ASSERT_EQUAL_size_t(12, encode_other_packet(out, &packet, 2));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(two, out, 12);
-    TEST_ASSERT_EQUAL_size_t(14, encode_other_packet(out, &packet, 4));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(four, out, 14);
+    expect_bytes("AA550001810081001850B204", encode_other_packet(out, &packet, 2));
+    expect_bytes("AA55000181008100835505002C01", encode_other_packet(out, &packet, 4));
 }
 
 void test_a_real_units_start_packet_is_encoded_byte_for_byte(void)
 {
     const encode_sample_t sample = {149, 21, 0};
     const encode_packet_t packet = {0x75, 1, 31, 31, &sample};
-    uint8_t out[ENCODE_PACKET_MAX];
     TEST_ASSERT_EQUAL_size_t(13, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(start_packet, out, 13);
 }
 
 void test_the_example_sample_of_section_5_is_64_e5_6f(void)
 {
-    static const uint8_t expected[] = {0x64, 0xE5, 0x6F};
-    const encode_sample_t sample = {7161, 100, 1};
-    uint8_t out[3];
-    encode_sample(out, sample);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
+    encode_sample(out, (encode_sample_t){7161, 100, 1});
+    expect_bytes("64E56F", 3);
 }
 
 void test_the_largest_sample_fills_all_its_bits(void)
 {
-    static const uint8_t expected[] = {0xFF, 0xFF, 0xFF};
-    const encode_sample_t sample = {16383, 255, 3};
-    uint8_t out[3];
-    encode_sample(out, sample);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 3);
+    encode_sample(out, (encode_sample_t){16383, 255, 3});
+    expect_bytes("FFFFFF", 3);
 }
 
 void test_an_angle_has_its_check_bit_set(void)
@@ -112,7 +114,6 @@ void test_a_packet_may_have_255_samples(void)
 {
     static const encode_sample_t samples[255];
     const encode_packet_t packet = {0, 255, 0, 0, samples};
-    uint8_t out[ENCODE_PACKET_MAX];
     TEST_ASSERT_EQUAL_size_t(775, encode_packet(out, &packet));
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[8]); /* AA ^ CT 0 ^ 01 ^ 01 */
     TEST_ASSERT_EQUAL_HEX8(0xAA, out[9]); /* 55 ^ LSN FF */
@@ -120,57 +121,36 @@ void test_a_packet_may_have_255_samples(void)
 
 void test_the_scan_reply_is_that_of_the_manual(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
-    uint8_t out[ENCODE_REPLY_MAX];
-    TEST_ASSERT_EQUAL_size_t(7, encode_scan_reply(out));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+    expect_bytes("A55A0500004081", encode_scan_reply(out));
 }
 
 /* The reply of a real T-mini Plus: firmware 1.2 with the minor byte first, hardware 1. */
 void test_device_information_is_a_real_units_reply(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x97, 0x02,
-                                       0x01, 0x01, 2,    0,    2,    5,    0,    4,    2,
-                                       4,    0,    0,    0,    9,    0,    1,    9,    4};
     const encode_information_t information = {
         151, 1, 2, 1, {2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4}};
-    uint8_t out[ENCODE_REPLY_MAX];
-
-    TEST_ASSERT_EQUAL_size_t(27, encode_information_reply(out, &information));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 27);
+    expect_bytes("A55A14000000049702010102000205000402040000000900010904",
+                 encode_information_reply(out, &information));
 }
 
 void test_health_has_status_and_a_little_endian_error_code(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x22, 0x34, 0x12};
-    uint8_t out[ENCODE_REPLY_MAX];
-    TEST_ASSERT_EQUAL_size_t(10, encode_health_reply(out, 0x22, 0x1234));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 10);
+    expect_bytes("A55A0300000006223412", encode_health_reply(out, 0x22, 0x1234));
 }
 
 void test_six_hertz_is_600_hundredths(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00,
-                                       0x04, 0x58, 0x02, 0x00, 0x00};
-    uint8_t out[ENCODE_REPLY_MAX];
-    TEST_ASSERT_EQUAL_size_t(11, encode_frequency_reply(out, 600));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 11);
+    expect_bytes("A55A040000000458020000", encode_frequency_reply(out, 600));
 }
 
 void test_a_reply_of_any_mode_and_length_can_be_made(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0x56, 0x34, 0x12, 0xC0, 0x99};
-    uint8_t out[ENCODE_REPLY_MAX];
-    TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 3, 0x99, NULL, 0x123456));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+    expect_bytes("A55A563412C099", encode_reply(out, 3, 0x99, NULL, 0x123456));
 }
 
 void test_a_length_never_spills_into_the_mode(void)
 {
-    static const uint8_t expected[] = {0xA5, 0x5A, 0xFF, 0xFF, 0xFF, 0x7F, 0x81};
-    uint8_t out[ENCODE_REPLY_MAX];
-    TEST_ASSERT_EQUAL_size_t(7, encode_reply(out, 1, 0x81, NULL, 0xFFFFFFFF));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, 7);
+    expect_bytes("A55AFFFFFF7F81", encode_reply(out, 1, 0x81, NULL, 0xFFFFFFFF));
 }
 
 void test_the_crc_of_123456789_is_a1(void)
