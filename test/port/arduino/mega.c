@@ -11,9 +11,9 @@
  *     N scans, N complete
  *
  * where N is the number of revolutions that all lidars have sent. A sketch may print one number per
- * revolution instead; then no byte may be lost. A sketch may also be a bridge, which prints the
- * lidar's bytes: all must arrive in order, and the computer sends it a start command. Exit status:
- * 0 as expected, 1 not, 2 wrong usage, 77 the firmware does not exist.
+ * scan instead: one more than revolutions means that a loss has divided one. A sketch may also be a
+ * bridge, which prints the lidar's bytes: all must arrive in order, and the computer sends it a
+ * start command. Exit status: 0 as expected, 1 not, 2 wrong usage, 77 the firmware does not exist.
  *
  * The emulator's own UART has a receive queue of 64 bytes, the chip's UART only two bytes and the
  * shift register. The lidars' ports are therefore modelled here: a byte that is complete while two
@@ -34,11 +34,7 @@
 #define CYCLES_PER_US (CLOCK_HZ / 1000000u)
 #define PORTS 3u
 #define QUEUE 2u
-/* Offsets in the core's HardwareSerial object: after the virtual function table and the members of
- * Print and Stream come six register pointers, a flag, and the receive buffer's head and tail. */
-#define HEAD_AT 25u
-#define TAIL_AT 26u
-#define CORE_BUFFER 64u
+#define CORE_BUFFER 64u /* Bytes that a bridge's core may hold. */
 #define COMMAND_US 500000u /* When a bridge's computer starts the lidar. */
 #define GRACE_US 1500000u  /* Time for the sketch to print its next line. */
 #define LIMIT_US 60000000u
@@ -46,11 +42,10 @@
 typedef struct {
     avr_t *avr;
     avr_uart_t *uart;
-    uint16_t object; /* The core's HardwareSerial object in data memory. */
     sim_t lidar;
     uint8_t queue[QUEUE];
     unsigned queued;
-    unsigned lost;  /* Bytes that found the chip's queue or the core's buffer full. */
+    unsigned lost;  /* Bytes that found the chip's queue full. */
     unsigned turns; /* Whole revolutions sent. */
 } port_t;
 
@@ -69,12 +64,6 @@ static uint64_t now_us(const avr_t *avr)
     return avr->cycle / CYCLES_PER_US;
 }
 
-static unsigned core_waiting(const port_t *port)
-{
-    const uint8_t *const object = &port->avr->data[port->object];
-    return (CORE_BUFFER + object[HEAD_AT] - object[TAIL_AT]) % CORE_BUFFER;
-}
-
 /* ---------------------------------------------------------------------------- the lidars' ports */
 
 /* As in the data sheet: the interrupt stays pending while there is a byte in the queue. */
@@ -86,7 +75,6 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t address, void *context)
     if (port->queued > 0) {
         port->queued--;
         port->queue[0] = port->queue[1];
-        port->lost += core_waiting(port) == CORE_BUFFER - 1;
     }
     avr_clear_interrupt(avr, &port->uart->rxc);
     if (port->queued > 0) {
@@ -146,18 +134,6 @@ static avr_uart_t *find_uart(avr_t *avr, char name)
     return NULL;
 }
 
-/* The address of the core's object for a port; 0 if the sketch does not use it. */
-static uint16_t find_object(const elf_firmware_t *firmware, char digit)
-{
-    const char name[] = {'S', 'e', 'r', 'i', 'a', 'l', digit, '\0'};
-    for (unsigned i = 0; i < firmware->symbolcount; i++) {
-        if (strcmp(firmware->symbol[i]->symbol, name) == 0) {
-            return (uint16_t)firmware->symbol[i]->addr;
-        }
-    }
-    return 0;
-}
-
 /* The lidar begins at full speed: slower revolutions have too many points for a Mega. */
 static void start_lidar(port_t *port)
 {
@@ -169,14 +145,13 @@ static void start_lidar(port_t *port)
     sim_observe(&port->lidar, &observer);
 }
 
-static bool connect(avr_t *avr, const elf_firmware_t *firmware, char digit)
+static bool connect(avr_t *avr, char digit)
 {
     port_t *const port = &ports[port_count];
     if (port_count == PORTS || digit < '1' || digit > '3') {
         return false;
     }
     port->avr = avr;
-    port->object = find_object(firmware, digit);
     port->uart = find_uart(avr, digit);
     start_lidar(port);
     avr->io[AVR_DATA_TO_IO(port->uart->r_udr)].r.c = read_data;
@@ -185,7 +160,7 @@ static bool connect(avr_t *avr, const elf_firmware_t *firmware, char digit)
                             port);
     avr_cycle_timer_register(avr, CYCLES_PER_US, pass_bytes, port);
     port_count++;
-    return port->object != 0;
+    return true;
 }
 
 /* ---------------------------------------------------------------------------------- the console */
@@ -207,7 +182,7 @@ static void judge(void)
     char end = '\0';
     if (sscanf(line, "%u%c", &scans, &end) == 1) { /* A sketch that prints one number per scan. */
         scans = ++numbers;
-        complete = ports[0].lost == 0 ? numbers : 0;
+        complete = ports[0].lost == 0 && numbers <= ports[0].turns ? numbers : 0;
     } else if (sscanf(line, "%u scans, %u complete", &scans, &complete) != 2) {
         return;
     }
@@ -320,7 +295,7 @@ int main(int argc, char **argv)
     }
     wanted = (unsigned)strtoul(argv[2], NULL, 10);
     for (int i = 3; i < argc; i++) {
-        if (!connect(avr, &firmware, argv[i][0])) {
+        if (!connect(avr, argv[i][0])) {
             (void)fprintf(stderr, "there is no Serial%s\n", argv[i]);
             return 2;
         }
