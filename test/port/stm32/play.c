@@ -201,6 +201,7 @@ static void disable_interrupts(void)
 }
 
 ACT_ON(set_priority, irq.lines[MODEL_USART_IRQ].priority = number)
+ACT_ON(set_dma_priority, irq.lines[MODEL_DMA_IRQ].priority = number)
 ACT_ON(set_access, machine.access_ns = number)
 
 /* ---------------------------------------------------------------------------------- the numbers */
@@ -229,6 +230,7 @@ NUMBER(skipped, counters_after_poll().bytes_skipped)
 NUMBER(overrun, counters_after_poll().bytes_overrun)
 NUMBER(served, irq.lines[0].served)
 NUMBER(position, tmini_ring_head(&lidar.ring))
+NUMBER(byte_waits, (model.flags & MODEL_RXNE) != 0)
 NUMBER(overrun_stands, (model.flags & MODEL_ORE) != 0)
 NUMBER(is_off, rig_is_off())
 NUMBER(overruns, rig_counts().overruns)
@@ -270,7 +272,9 @@ static const play_word_t words[] = {
     {.name = "held", .act_on = hold_and_pass},
     {.name = "deaf", .act = disable_interrupts},
     {.name = "priority", .act_on = set_priority},
+    {.name = "dma-priority", .act_on = set_dma_priority},
     {.name = "access", .act_on = set_access},
+    {.name = "RXNE", .count = byte_waits},
     {.name = "off", .count = is_off},
     {.name = "ORE", .count = overruns},
     {.name = "FEs", .count = framing_errors},

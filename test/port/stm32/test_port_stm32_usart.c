@@ -103,18 +103,13 @@ static void enable_fifo(void)
     model_usart.CR3 |= MODEL_CR3_RXFTIE | MODEL_CR3_RXFTCFG_HALF;
 }
 
-NUMBER(byte_waits, (model.flags & MODEL_RXNE) != 0)
 NUMBER(idle_interrupts, (model_usart.CR1 & MODEL_CR1_IDLEIE) != 0)
 NUMBER(bytes, rig_counts().bytes)
 
 const play_word_t port_words[] = {
-    {.name = "interrupt", .act = usart_handler},
-    {.name = "channel", .act_on = set_channel},
-    {.name = "FIFO", .act = enable_fifo},
-    {.name = "RXNE", .count = byte_waits},
-    {.name = "IDLEIE", .count = idle_interrupts},
-    {.name = "counted", .count = bytes},
-    {.name = NULL},
+    {.name = "interrupt", .act = usart_handler}, {.name = "channel", .act_on = set_channel},
+    {.name = "FIFO", .act = enable_fifo},        {.name = "IDLEIE", .count = idle_interrupts},
+    {.name = "counted", .count = bytes},         {.name = NULL},
 };
 
 /* ----------------------------------------------------------------------------------- life cycle */
