@@ -39,7 +39,7 @@ static const row_t tales[] IN_FLASH = {
         "large scans <S drain packets:2 200( <P:1 ) !MORE packets:24 drain packets:202"),
     /* A packet of 32 samples costs 44 and twice its 106 bytes: six of them cost 1536. */
     ROW(a_poll_ends_when_its_effort_is_exactly_used_up,
-        "large 7( <P:32 ) !MORE packets:6 !NONE packets:7"),
+        "large 7( <P:32 ) !MORE packets:6 next:0 !NONE packets:7"),
     /* A packet of 7 samples costs 106, and that of 13 bytes which ended the scan 57: 1541. */
     ROW(the_packet_that_ended_a_scan_counts_when_it_is_decoded_again,
         "large scans <P <S 30( <P:7 ) !SCAN !MORE packets:17 drain"),

@@ -128,7 +128,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(an_age_of_24_days_remains,
         "idle completed:0 5( ~1073741823 !NONE ) " NO_AGE "~1000 " NO_AGE),
     /* ---- How long a task may sleep ---- */
-    ROW(an_idle_lidar_needs_no_poll, "idle !NONE next:65535"),
+    ROW(an_idle_lidar_needs_no_poll_for_a_minute, "idle !NONE next:65535 ~70000 next:0"),
     ROW(a_task_sleeps_until_the_line_is_quiet_in_steps_of_50_ms_at_most,
         "stop >65 !NONE next:50 ~20 next:30 !NONE ~20 !NONE next:10 ~10 next:0 !STOPPED / "
         "quiet:200 stop >65 !NONE next:50 ~50 !NONE next:50 ~50 !NONE ~50 !NONE ~50 !STOPPED / "

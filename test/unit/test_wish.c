@@ -69,6 +69,9 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_lidar_that_has_never_answered_gets_no_reboot,
         "start >65 takes:-1 +50 !FAILED +500 !FAILED !NONE +1000 !FAILED !NONE takes:2 +2000 >65 "
         "+50 30( >0D +250 ) >65 +50 >60 <S !STARTED"),
+    ROW(a_start_that_succeeds_leaves_the_error_of_the_command_that_failed_last,
+        "attempts:1 idle info >90 +2000 !FAILED start >65 +50 >0D <600 >60 <scan <S !STARTED "
+        "?TIMEOUT"),
     ROW(a_question_about_the_frequency_that_the_start_cannot_answer_fails,
         "idle frequency >0D start +250 28( >0D +250 ) >0D +250 !FAILED ?TIMEOUT >65 +50 >60 <S "
         "!STARTED"),
