@@ -95,15 +95,12 @@ def tool_versions():
 
 def measure_all(folder):
     made = streams.make(folder)
-    recording = folder / "clean.bin"
-    recording.write_bytes(made["clean"])
     figures = {"versions": tool_versions(), "targets": {}}
     with concurrent.futures.ProcessPoolExecutor(max_workers=2) as pool:
         jobs = {(target.name, level): pool.submit(measure_target, target.name, level, folder, made)
                 for target in TARGETS for level in LEVELS}
         others = {name: pool.submit(measure_compiler, name, folder, made) for name in other_compilers()}
-        figures["host"] = host.measure(host.build(folder), recording, folder,
-                                       made["clean packets"], instructions.BYTES_PER_POLL)
+        figures["host"] = host.measure(folder, made["clean"], made["clean packets"], instructions.BYTES_PER_POLL)
         figures["python"] = python_package.measure(folder, made["clean"])
         for key, job in jobs.items():
             figures["targets"][key] = job.result()

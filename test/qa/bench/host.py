@@ -30,8 +30,12 @@ def count(program, way, recording, block, folder):
     return int(total[1]) / recording.stat().st_size, int(packets)
 
 
-def measure(program, recording, folder, packets, blocks):
+def measure(folder, clean, packets, blocks):
     """The instructions per byte by way of feeding and by number of bytes per poll."""
+    program = build(folder)
+    recording = folder / "clean.bin"
+    recording.write_bytes(clean)
+
     def cost(way, block=PACKET, expected=packets):
         each, found = count(program, way, recording, block, folder)
         if found != expected:

@@ -19,9 +19,7 @@ STOP_AGAIN_MS = 500  # The library waits this long between two stops.
 BYTES_PER_POLL = (1, 4, 13, 64, 131, 512)
 FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
-START, STOP, INFO, HEALTH, GET_FREQUENCY, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x0D, 0x40
-COMMANDS = {START: "tmini_start", STOP: "tmini_stop", INFO: "tmini_request_info", HEALTH: "tmini_request_health",
-            GET_FREQUENCY: "tmini_request_frequency", REBOOT: "tmini_reboot"}
+START, STOP, INFO, HEALTH, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x40
 STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
 
 
@@ -130,13 +128,9 @@ class Session:
             if self.now_ms > end_ms:
                 raise BenchError(f"the event {wanted} does not come")
 
-    def command(self, code):
-        if self.machine.call(COMMANDS[code], self.at) != 0:
-            raise BenchError(f"the command {code:#x} is refused")
-
-    def set_frequency(self, chz):
-        if self.machine.call("tmini_set_frequency", self.at, chz) != 0:
-            raise BenchError(f"the frequency {chz} is refused")
+    def command(self, function, *arguments):
+        if self.machine.call(function, self.at, *arguments) != 0:
+            raise BenchError(f"{function}() is refused")
 
     def reach_scanning(self):
         """Exchanges commands and replies until the lidar has replied to the start."""
@@ -146,7 +140,7 @@ class Session:
             self.tick(reply)
 
     def spin_up(self):
-        self.command(START)
+        self.command("tmini_start")
         self.reach_scanning()
 
     def run(self, stream, bytes_per_tick=BYTES_PER_TICK):
@@ -240,24 +234,24 @@ def conversation(target, program, clean, faulty):
     session = Session(target, program)
     if "MORE" not in session.tick(FALSE_HEADERS):
         raise BenchError("a full ring of false headers is not too much for one poll")
-    for code, event in ((STOP, "STOPPED"), (INFO, "INFO"), (HEALTH, "HEALTH"),
-                        (GET_FREQUENCY, "FREQUENCY"), (REBOOT, "REBOOTED")):
-        session.command(code)
+    for function, event in (("stop", "STOPPED"), ("request_info", "INFO"), ("request_health", "HEALTH"),
+                            ("request_frequency", "FREQUENCY"), ("reboot", "REBOOTED")):
+        session.command("tmini_" + function)
         session.until(event)
-    session.set_frequency(730)
+    session.command("tmini_set_frequency", 730)
     session.until("FREQUENCY")
     session.lidar.answers = False
-    session.command(INFO)
+    session.command("tmini_request_info")
     session.until("COMMAND_FAILED")
     session.lidar.answers = True
-    session.command(STOP)
+    session.command("tmini_stop")
     session.until("STOPPED")
     if "UNWANTED_SCANNING" not in session.tick(clean[:BYTES_PER_TICK], STOP_AGAIN_MS):
         raise BenchError("an idle lidar that streams is not noticed")
     session.until("STOPPED")
     session.spin_up()
     session.run(clean)
-    session.set_frequency(800)
+    session.command("tmini_set_frequency", 800)
     for _ in range(4):
         session.run(clean)
     session.reach_scanning()

@@ -7,7 +7,7 @@ import re
 
 import load
 from flash import PROGRAMS
-from targets import LEVELS, TARGETS, target_named
+from targets import LEVELS, TARGETS
 
 
 def table(head, rows):
@@ -21,16 +21,9 @@ def one(value):
     return f"{value:.1f}"
 
 
-def machines(figures):
-    """Returns (title, figures) for each processor and optimisation level."""
-    for target in TARGETS:
-        for level in LEVELS:
-            yield f"{target.title} `{level}`", figures["targets"][target.name, level]
-
-
 def small(figures):
-    """The same only for -Os, the usual level of firmware."""
-    return [(title, f) for title, f in machines(figures) if title.endswith("`-Os`")]
+    """(title, figures) of each processor for -Os, the usual level of firmware."""
+    return [(f"{target.title} `-Os`", figures["targets"][target.name, "-Os"]) for target in TARGETS]
 
 
 def versions(figures):
@@ -39,12 +32,9 @@ def versions(figures):
 
 
 def memory(figures):
-    rows = []
-    for name in (target.name for target in TARGETS):
-        f = figures["targets"][name, "-Os"]
-        rows.append([f"{target_named(name).title} `-Os`", *(f["flash"][part]["own"] for part, _, _ in PROGRAMS),
-                     f["flash"]["everything"]["support"], f["counts"]["tmini_t"],
-                     f["stack"]["polling"][0], f["counts"]["stack seen"], f["stack"]["interrupt"][0]])
+    rows = [[title, *(f["flash"][part]["own"] for part, _, _ in PROGRAMS), f["flash"]["everything"]["support"],
+             f["counts"]["tmini_t"], f["stack"]["polling"][0], f["counts"]["stack seen"], f["stack"]["interrupt"][0]]
+            for title, f in small(figures)]
     return table(["bytes", *(title for _, title, _ in PROGRAMS), "C library", "RAM: `tmini_t`",
                   "stack, polling, at most", "seen", "interrupt, at most"], rows)
 
@@ -73,12 +63,9 @@ def optional(figures):
 
 
 def instructions(figures):
-    rows = []
-    for title, f in small(figures):
-        costs = f["counts"]["costs"]
-        rows.append([title, f["counts"]["feed worst"], *(one(sum(costs[name])) for name in
-                     ("bytes", "blocks", "dma", "streaming", "corrupted")),
-                     *f["counts"]["idle poll"].values()])
+    feeds = ("bytes", "blocks", "dma", "streaming", "corrupted")
+    rows = [[title, f["counts"]["feed worst"], *(one(sum(f["counts"]["costs"][name])) for name in feeds),
+             *f["counts"]["idle poll"].values()] for title, f in small(figures)]
     return table(["instructions", "`tmini_feed_byte()`, worst", "per byte, by bytes",
                   "per byte, by blocks", "per byte, by DMA", "per byte, streaming",
                   "per byte, corrupted", "idle `tmini_poll()`", "the same, 1 ms later"], rows)
