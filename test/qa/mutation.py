@@ -54,7 +54,7 @@ PLACES = [
     ("examples/web/page/", "-L ^browser$ --repeat until-pass:2"),
     ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$ --repeat until-pass:2"),
     ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$ --repeat until-pass:2"),
-    ("test/simulator/", "-R ^(test_simulator|test_link|host[.].*)$ --repeat until-pass:2"),
+    ("test/simulator/", "-R ^(test_simulator|host[.].*)$ --repeat until-pass:2"),
     ("examples/(host|bridge)/", "-L ^host$ --repeat until-pass:2"),
 ]
 

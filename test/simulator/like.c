@@ -3,6 +3,8 @@
 
 #include "like.h"
 
+#include "members.h"
+
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,14 +63,11 @@ bool like_read_number(options_t *options, const number_t *number, const char *te
         return false;
     }
     const double scaled = value * number->scale;
-    const int32_t whole = (int32_t)(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
-    const uint16_t half = (uint16_t)whole;
-    const uint8_t byte = (uint8_t)whole;
-    const void *const source = number->size == sizeof byte    ? (const void *)&byte
-                               : number->size == sizeof half  ? (const void *)&half
-                               : number->size == sizeof whole ? (const void *)&whole
-                                                              : (const void *)&scaled;
-    memcpy(place, source, number->size);
+    if (number->size == sizeof scaled) {
+        memcpy(place, &scaled, sizeof scaled);
+    } else {
+        member_store(place, number->size, (uint64_t)(int64_t)(scaled + (scaled < 0 ? -0.5 : 0.5)));
+    }
     return true;
 }
 
