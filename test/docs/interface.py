@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Checks that docs/interface.md names exactly the public functions: those of the headers outside parts/.
+"""Checks that docs/interface.md names exactly the public functions: those of the headers outside parts/; and that the
+functions which docs/design.md names exist.
 
     interface.py
 
@@ -33,8 +34,13 @@ def main():
         print(f"docs/interface.md does not name {name}()")
     for name in sorted(named - wanted):
         print(f"there is no public function {name}()")
+    sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("lib/**/*.[ch]"))
+    design = (ROOT / "docs/design.md").read_text(encoding="utf-8")
+    gone = [name for name in re.findall(r"`(\w+)\(\)`", design) if f"{name}(" not in sources]
+    for name in gone:
+        print(f"docs/design.md names {name}(), which does not exist")
     print(f"{len(wanted)} public functions")
-    sys.exit(named != wanted or len(wanted) < 40)
+    sys.exit(named != wanted or len(wanted) < 40 or gone != [])
 
 
 main()
