@@ -195,7 +195,7 @@ TMINI_INLINE void tmini_fence(void)
 #endif
 
 /** @def TMINI_COPY
- * Copies some bytes, a constant number: by moves, also where memcpy() is always a call
+ * Copies a constant number of bytes without a call, also where memcpy() is always one
  * (-ffreestanding, -fno-builtin). */
 #if defined(__GNUC__) && !defined(TMINI_MEMCPY_ONLY) /* For a model checker. */
 #define TMINI_COPY(to, from, size) __builtin_memcpy(to, from, size)
