@@ -31,6 +31,7 @@ static void begin_with(size_t capacity, unsigned filter)
 {
     memset(points, 0xEE, sizeof points);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&builder, points, capacity, filter));
+    TEST_ASSERT_EQUAL_PTR(points, scan->points);
 }
 
 void setUp(void)
@@ -154,37 +155,6 @@ void test_only_defined_filters_are_taken(void)
 
 /* ---------------------------------------------------------------------------------- revolutions */
 
-void test_points_are_in_order_of_arrival(void)
-{
-    (void)start(3);
-    (void)point(7, 47);
-    (void)point(90 * DEGREE, 91 * DEGREE);
-    TEST_ASSERT_EQUAL_PTR(points, scan->points);
-    TEST_ASSERT_EQUAL_UINT16(11, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(3, points[0].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(7, points[1].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(17, points[2].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(47, points[5].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(5760, points[6].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(5824, points[10].angle_q6);
-    TEST_ASSERT_EQUAL_UINT16(1000, points[0].distance_mm);
-    TEST_ASSERT_EQUAL_UINT16(1028, points[10].distance_mm);
-    TEST_ASSERT_EQUAL_UINT8(196, points[10].intensity);
-    TEST_ASSERT_EQUAL_UINT8(3, points[4].flag);
-}
-
-void test_filtered_points_keep_their_place(void)
-{
-    begin_with(ROOM, TMINI_FILTER_SPECULAR);
-    (void)start(0);
-    quarter(0);
-    TEST_ASSERT_EQUAL_UINT16(6, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1007, points[2].distance_mm);
-    TEST_ASSERT_EQUAL_UINT16(0, points[3].distance_mm);
-    TEST_ASSERT_EQUAL_UINT8(2, points[3].flag);
-    TEST_ASSERT_EQUAL_UINT16(1021, points[4].distance_mm);
-}
-
 void test_counts_stop_at_65535(void)
 {
     begin_with(2, TMINI_FILTER_NONE);
@@ -253,7 +223,8 @@ void test_a_lost_start_packet_never_merges_two_revolutions_wherever_they_start(v
  *     get:1d,90d overrun      a packet that DMA overwrites before it is added
  *     strays:2 garbage:501    bytes before the next packet; bytes, one after the other
  *     room:8 later:167 bad:3  the buffer; the time passes; 3 checksum errors
- *     new             from the beginning
+ *     new specular    from the beginning; with this filter
+ *     @3:640,1021,197,3       angle, distance, intensity and flag of this point of the buffer
  *     count:21 …      see tell_word() */
 
 static void garbage(unsigned count)
@@ -305,19 +276,31 @@ static void tell_packet(const char *word, bool is_start)
     TEST_ASSERT_EQUAL_MESSAGE(at[-1] == '!', arrive(ct, count, first_q6, last_q6), word);
 }
 
+/* What the word leaves out is not compared. */
+static void expect_point(const char *word)
+{
+    char *rest;
+    const tmini_point_t *const point = &points[strtoul(word + 1, &rest, 10)];
+    const uint16_t got[] = {point->angle_q6, point->distance_mm, point->intensity, point->flag};
+    for (unsigned i = 0; rest[0] != '\0'; i++) {
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(strtoul(rest + 1, &rest, 0), got[i], word);
+    }
+}
+
 static void tell_word(char *word)
 {
     const row_number_t numbers[] = {
-        {"count", scan->count},        {"packets", scan->packets},
-        {"gaps", scan->gaps},          {"complete", scan->complete},
-        {"dropped", scan->dropped},    {"errors", scan->checksum_errors},
-        {"chz", scan->frequency_chz},  {"start-ms", scan->start_ms},
-        {"end-ms", scan->end_ms},      {"first", points[0].angle_q6},
-        {"ninth", points[8].angle_q6}, {"late", builder.late_scans},
+        {"count", scan->count},       {"packets", scan->packets},
+        {"gaps", scan->gaps},         {"complete", scan->complete},
+        {"dropped", scan->dropped},   {"errors", scan->checksum_errors},
+        {"chz", scan->frequency_chz}, {"start-ms", scan->start_ms},
+        {"end-ms", scan->end_ms},     {"late", builder.late_scans},
     };
     char *rest;
     const uint32_t number = angle_of(row_text(word), &rest);
-    if (row_is(word, "new")) {
+    if (word[0] == '@') {
+        expect_point(word);
+    } else if (row_is(word, "new")) {
         setUp();
     } else if (row_is(word, "dma")) {
         receiver_open_dma(&receiver, memory, 512, 0);
@@ -349,6 +332,8 @@ static void tell_word(char *word)
         garbage(number);
     } else if (row_is(word, "room")) {
         begin_with(number, TMINI_FILTER_NONE);
+    } else if (row_is(word, "specular")) {
+        begin_with(ROOM, TMINI_FILTER_SPECULAR);
     } else if (row_is(word, "later")) {
         now_ms += (uint32_t)strtol(row_text(word), NULL, 10);
     } else if (row_is(word, "bad")) {
@@ -365,6 +350,11 @@ static void tell_word(char *word)
 
 static const row_t rows[] IN_FLASH = {
     /* ---- Revolutions ---- */
+    ROW(points_are_in_order_of_arrival,
+        "S:3 P:7,47 P:90d,91d count:11 @0:3,1000 @1:7 @2:17 @4:37,1021,197,3 @5:47 @6:5760 "
+        "@10:5824,1028,196"),
+    ROW(filtered_points_keep_their_place,
+        "specular S:0 quarter:0 count:6 @2:1488,1007 @3:2912,0,198,2 @4:4336,1021"),
     ROW(what_precedes_the_first_start_packet_is_no_scan, "quarter:180d quarter:270d S:0 count:1"),
     ROW(a_scan_goes_from_a_start_packet_to_the_next, /* Which reports its frequency. */
         "turn later:167 end:0 " COMPLETE
@@ -373,7 +363,7 @@ static const row_t rows[] IN_FLASH = {
         "turn later:-1 end:0 " COMPLETE "start-ms:5000 end-ms:5000"),
     ROW(a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added,
         "turn end:17 " COMPLETE
-        "first:0 later:167 add first:17 count:1 packets:1 start-ms:5167 complete:0"),
+        "@0:0 later:167 add @0:17 count:1 packets:1 start-ms:5167 complete:0"),
     ROW(a_scan_is_closed_once, "S:0 end:0 gaps:0 complete:0 add"),
     ROW(scans_follow_one_another, "S:0 3( rest:0 end:0 " COMPLETE "add )"),
     ROW(the_frequency_has_steps_of_a_tenth_of_a_hertz, /* 0x75 is from a real unit: 5.8 Hz. */
@@ -382,7 +372,7 @@ static const row_t rows[] IN_FLASH = {
         "S:0 quarter:0 discard quarter:90d S:0 count:1"),
     /* ---- A small buffer ---- */
     ROW(points_that_do_not_fit_are_counted_and_not_written,
-        "room:8 turn ninth:0xEEEE end:0 gaps:0 complete:0 count:8 dropped:13 packets:5"),
+        "room:8 turn @8:0xEEEE end:0 gaps:0 complete:0 count:8 dropped:13 packets:5"),
     ROW(a_buffer_that_just_fits_makes_a_complete_scan,
         "room:21 turn end:0 " COMPLETE
         "room:20 add rest:0 end:0 gaps:0 complete:0 count:20 dropped:1"),
