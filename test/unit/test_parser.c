@@ -117,19 +117,50 @@ void test_a_ring_is_large_enough_or_an_argument_error(void)
 
 /* -------------------------------------------------------------------------------------- damage */
 
+/* The bytes in `bytes` were a packet once, and two intact packets follow: both are found. */
+static void costs_only_itself(size_t size, uint8_t max_samples)
+{
+    stream.size = size;
+    stream_add(&stream, start_packet, 13);
+    stream_add(&stream, manual_packet, 67);
+    receiver_open(&receiver, memory, 1024, max_samples);
+    feed(bytes, stream.size);
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+    TEST_ASSERT_EQUAL_UINT(size, receiver_frame_offset(&receiver));
+    TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
+    TEST_ASSERT_EQUAL_UINT(size + 13, receiver_frame_offset(&receiver));
+    expect_skipped((uint32_t)size);
+}
+
 void test_each_part_of_a_packet_counts_in_its_checksum(void)
 {
     static const uint8_t changed[] = {2, 5, 7, 8, 9, 10, 11, 12, 64, 65, 66};
     for (size_t i = 0; i < sizeof changed; i++) {
         memcpy(bytes, manual_packet, 67);
         bytes[changed[i]] ^= 0x40;
-        receiver_open(&receiver, memory, 256, 0);
-        feed(bytes, 67);
-        feed(start_packet, 13);
-        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
-        TEST_ASSERT_EQUAL_UINT(67, receiver_frame_offset(&receiver));
+        costs_only_itself(67, 0);
         TEST_ASSERT_EQUAL_UINT32(1, receiver_counters(&receiver).checksum_errors);
-        expect_skipped(67);
+    }
+}
+
+void test_a_packet_cut_anywhere_costs_no_other_packet(void)
+{
+    for (size_t size = 1; size < 67; size++) {
+        memcpy(bytes, manual_packet, size);
+        costs_only_itself(size, 0);
+    }
+}
+
+/* The LSN of a packet of 19 samples is damaged to every other value, where packets have at most 80
+ * samples, or 255. */
+void test_a_corrupted_length_does_not_cost_the_next_packet(void)
+{
+    for (unsigned lsn = 0; lsn < 512; lsn++) {
+        if (lsn % 256 != 19) {
+            memcpy(bytes, manual_packet, 67);
+            bytes[3] = (uint8_t)lsn;
+            costs_only_itself(67, lsn < 256 ? 0 : 255);
+        }
     }
 }
 
@@ -196,47 +227,6 @@ void test_a_damaged_byte_costs_no_packet_but_its_own(void)
             }
             expect_like_reference(1 + place % 40); /* With the last value; test/system has all. */
         }
-    }
-}
-
-void test_a_packet_cut_anywhere_costs_no_other_packet(void)
-{
-    for (size_t size = 1; size < 67; size++) {
-        stream.size = 0;
-        stream_add(&stream, start_packet, 13);
-        stream_add(&stream, manual_packet, size);
-        stream_add(&stream, start_packet, 13);
-        stream_add(&stream, manual_packet, 67);
-        receiver_open(&receiver, memory, 256, 0);
-        feed(bytes, stream.size);
-        expect_packet(1, 0);
-        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
-        TEST_ASSERT_EQUAL_UINT(13 + size, receiver_frame_offset(&receiver));
-        expect_packet(19, 26 + size);
-        expect_skipped((uint32_t)size);
-    }
-}
-
-/* The LSN of a packet of 19 samples is damaged to every other value. */
-void test_a_corrupted_length_does_not_cost_the_next_packet(void)
-{
-    for (unsigned lsn = 0; lsn < 512; lsn++) {
-        if (lsn % 256 == 19) {
-            continue;
-        }
-        stream.size = 0;
-        stream_add(&stream, manual_packet, 67);
-        bytes[3] = (uint8_t)lsn;
-        stream_add(&stream, start_packet, 13);
-        stream_add(&stream, manual_packet, 67);
-        receiver_open(&receiver, memory, 1024,
-                      lsn < 256 ? 0 : 255); /* At most 80 samples, or 255. */
-        feed(bytes, stream.size);
-        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
-        TEST_ASSERT_EQUAL_UINT(67, receiver_frame_offset(&receiver));
-        TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, receiver_next_at_end(&receiver));
-        TEST_ASSERT_EQUAL_UINT(80, receiver_frame_offset(&receiver));
-        expect_skipped(67);
     }
 }
 
