@@ -302,22 +302,19 @@ void test_counters_count_to_the_end_of_their_ranges(void)
     rig.lidar.recovery.restarts = small + 4;
     rig.lidar.recovery.reboots = small + 5;
     tmini_counters(&rig.lidar, &seen);
-    const uint32_t seen_large[] = {seen.packets,
-                                   seen.checksum_errors,
-                                   seen.bytes_in_packets,
-                                   seen.bytes_in_replies,
-                                   seen.bytes_skipped,
-                                   seen.bytes_overrun,
-                                   seen.scans,
-                                   seen.late_scans};
-    const uint16_t seen_small[] = {seen.timeouts, seen.losses, seen.recoveries, seen.restarts,
-                                   seen.reboots};
-    for (unsigned i = 0; i < 8; i++) {
-        TEST_ASSERT_EQUAL_UINT32(large + 1 + i, seen_large[i]);
-    }
-    for (unsigned i = 0; i < 5; i++) {
-        TEST_ASSERT_EQUAL_UINT16(small + 1 + i, seen_small[i]);
-    }
+    TEST_ASSERT_EQUAL_UINT32(large + 1, seen.packets);
+    TEST_ASSERT_EQUAL_UINT32(large + 2, seen.checksum_errors);
+    TEST_ASSERT_EQUAL_UINT32(large + 3, seen.bytes_in_packets);
+    TEST_ASSERT_EQUAL_UINT32(large + 4, seen.bytes_in_replies);
+    TEST_ASSERT_EQUAL_UINT32(large + 5, seen.bytes_skipped);
+    TEST_ASSERT_EQUAL_UINT32(large + 6, seen.bytes_overrun);
+    TEST_ASSERT_EQUAL_UINT32(large + 7, seen.scans);
+    TEST_ASSERT_EQUAL_UINT32(large + 8, seen.late_scans);
+    TEST_ASSERT_EQUAL_UINT16(small + 1, seen.timeouts);
+    TEST_ASSERT_EQUAL_UINT16(small + 2, seen.losses);
+    TEST_ASSERT_EQUAL_UINT16(small + 3, seen.recoveries);
+    TEST_ASSERT_EQUAL_UINT16(small + 4, seen.restarts);
+    TEST_ASSERT_EQUAL_UINT16(small + 5, seen.reboots);
 }
 
 /* Seven events end a command: STARTED (bit 1) to COMMAND_FAILED (bit 7). The other six, up to SCAN
