@@ -78,23 +78,11 @@ void tearDown(void)
 
 static const row_t tales[] IN_FLASH = {
     /* ---- How long a pause may be ---- */
-    ROW(half_a_turn_more_than_the_bytes_explain_is_no_pause,
-        STREAMS "3( silence:44 " TWO "doubtful:0:2 " THEN_TWO "doubtful:0:2 )"),
     ROW(a_longer_pause_makes_only_the_packets_around_it_doubtful, /* Perhaps it was after them. */
         STREAMS "silence:45 " TWO "doubtful:2:2 " THEN_TWO "doubtful:1:2 " THEN_TWO "doubtful:0:2"),
-    ROW(a_clock_that_steps_back_shows_no_time, /* Until it has caught up. */
-        STREAMS "3( back:10 !NONE " TWO "doubtful:0:2 ~12 !NONE )"),
-    ROW(a_clock_that_steps_back_by_more_than_10_ms_makes_packets_doubtful, /* A pause? */
-        STREAMS "back:11 !NONE " TWO "doubtful:2:2 ~12 " THEN_TWO "doubtful:1:2 " THEN_TWO
-                "doubtful:0:2"),
-    ROW(many_bytes_explain_a_long_pause, STREAMS "silence:72 5( <P:24 ) doubtful:0:5"), /* 31 ms. */
-    ROW(many_bytes_do_not_explain_every_pause, STREAMS "silence:73 5( <P:24 ) doubtful:5:5"),
-    ROW(what_bytes_explain_is_rounded_down, /* 170 bytes take 12.95 ms. */
-        STREAMS "silence:54 2( <P:25 ) doubtful:2:2"),
     ROW(a_limit_below_half_a_turn_counts_as_half_a_turn,
         LONGEST("1", "44", "45") " / " LONGEST("41", "44", "45")),
     ROW(a_limit_may_be_higher, LONGEST("42", "45", "46") " / " LONGEST("249", "252", "253")),
-    ROW(without_a_limit_no_pause_is_doubted, STREAMS_WITH("0") "silence:900 " TWO "doubtful:0:2"),
     ROW(a_packet_is_doubtful_if_it_begins_among_the_bytes_after_a_pause, /* With its first byte. */
         STREAMS "silence:45 <P <x:AA doubtful:1:1 ~2 <x:5500040105C105F85E32A0 " OTHER_10 TWO
                 "doubtful:2:3"),
@@ -114,16 +102,9 @@ static const row_t tales[] IN_FLASH = {
     /* ---- Bytes that the port reports to hold ---- */
     ROW(bytes_that_the_port_holds_explain_a_pause_as_well, /* 544 bytes explain 41 ms. */
         STREAMS "silence:82 " TWO "held:500 doubtful:0:2 silence:83 " TWO "held:500 doubtful:2:2"),
-    /* 410 of 500 are fed at once. The others, fed later, explain no time again. */
-    ROW(held_bytes_explain_a_pause_only_once,
-        STREAMS "held:500 5( <P:24 ) drain silence:44 " TWO "doubtful:0:2 <P:12 doubtful:0:1 " TWO
-                "doubtful:0:2 held:500 5( <P:24 ) drain silence:45 " TWO
-                "doubtful:0:2 <P:12 doubtful:0:1 " TWO "doubtful:2:2"),
     ROW(held_bytes_more_than_65535_ahead_explain_nothing, /* The place counts as passed. */
         STREAMS "held:65579 silence:900 " TWO "doubtful:0:2 held:65580 silence:45 " TWO
                 "doubtful:2:2"),
-    /* ---- More than the ring holds ---- */
-    ROW(a_full_ring_is_no_reason_to_doubt, STREAMS "8( <P:31 ) 2( <P:30 ) doubtful:0:10"),
 };
 
 void test_tales(void)
