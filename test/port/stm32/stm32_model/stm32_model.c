@@ -3,8 +3,6 @@
 
 #include "stm32_model.h"
 
-#include <string.h>
-
 #include "machine.h"
 
 #define ERRORS (MODEL_FE | MODEL_NE | MODEL_ORE)
@@ -33,34 +31,32 @@ static void dma_write(uint8_t byte)
     }
 }
 
-static bool has_fifo(void)
+static size_t fifo_size(void)
 {
 #ifdef STM32_MODEL_SR
-    return false;
+    return 1;
 #else
-    return (model_usart.CR1 & MODEL_CR1_FIFOEN) != 0;
+    return (model_usart.CR1 & MODEL_CR1_FIFOEN) != 0 ? MODEL_FIFO : 1;
 #endif
 }
 
 /* RXNE means that a byte waits, also with the FIFO on. */
 static void note_waiting(void)
 {
-    const bool half = has_fifo() && model.waiting >= MODEL_FIFO / 2;
+    const bool half = machine.count >= MODEL_FIFO / 2;
     model.flags &= ~(MODEL_RXNE | MODEL_RXFT);
-    model.flags |= (model.waiting > 0 ? MODEL_RXNE : 0u) | (half ? MODEL_RXFT : 0u);
+    model.flags |= (machine.count > 0 ? MODEL_RXNE : 0u) | (half ? MODEL_RXFT : 0u);
 }
 
 static uint8_t take_data(void)
 {
-    const uint8_t byte = model.data[0];
-    if (model.waiting > 1) { /* The last byte can be read again. */
-        memmove(model.data, &model.data[1], MODEL_FIFO - 1);
+    if (machine.count > 0) {
+        model.data = (uint8_t)machine_take();
     }
-    model.waiting = (uint8_t)(model.waiting - (model.waiting > 0));
     model.flags &= ~model.seen;
     model.seen = 0;
     note_waiting();
-    return byte;
+    return model.data;
 }
 
 static bool is_dma_requested(void)
@@ -85,13 +81,9 @@ static bool receives(void)
 static void receive(uint32_t errors, uint8_t byte)
 {
     const bool held = model.ore_holds_rxne && (model.flags & MODEL_ORE) != 0;
-    if (held || model.waiting >= (has_fifo() ? MODEL_FIFO : 1u)) {
-        model.flags |= MODEL_ORE;
-    } else {
-        model.data[model.waiting++] = byte;
-        model.flags |= errors;
-        note_waiting();
-    }
+    machine.uart.fifo_size = fifo_size();
+    model.flags |= held || !machine_put(byte) ? MODEL_ORE : errors;
+    note_waiting();
     model.was_busy = model.was_busy || !held;
     model.idle_ns = machine.now_ns + MACHINE_BYTE_NS;
     serve_dma();

@@ -2,7 +2,7 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines
- * (machine.h has time and line). Registers are accessed only by these functions: reading has side
+ * (machine.h has time, line and FIFO). Registers are accessed only by these functions: reading has side
  * effects. Each access takes some nanoseconds, in which interrupts may come.
  *
  * Variants, by macros:
@@ -105,9 +105,8 @@ typedef struct {
     uint64_t tick_ns; /* Time that the tick's interrupt has counted. */
     volatile uint32_t tick_ms;
     uint32_t flags;
-    uint32_t seen;            /* Flags read in SR: reading DR clears them. */
-    uint8_t data[MODEL_FIFO]; /* Only the first is used without the FIFO. */
-    uint8_t waiting;
+    uint32_t seen; /* Flags read in SR: reading DR clears them. */
+    uint8_t data;  /* The last byte read, which can be read again. */
     bool was_busy;
     uint64_t idle_ns;
     model_dma_t dma;
