@@ -481,7 +481,7 @@ static bool receive(tmini_t *lidar)
 
 /* Does what is due because time has passed or the line is quiet. True if it ends the current
  * operation. */
-static bool go_on(tmini_t *lidar)
+static bool advance(tmini_t *lidar)
 {
     const int result = tmini_command_poll(lidar);
     if (result == TMINI_UNDER_WAY) {
@@ -495,7 +495,7 @@ static bool go_on(tmini_t *lidar)
  * ends. */
 static void keep_time(tmini_t *lidar)
 {
-    while (lidar->pending == 0 && go_on(lidar)) {
+    while (lidar->pending == 0 && advance(lidar)) {
     }
 }
 

@@ -237,10 +237,10 @@ void prove_driver_nothing(void)
     CLAIM(is_sound());
 }
 
-void prove_driver_go_on(void)
+void prove_driver_advance(void)
 {
     any_receiving_lidar();
-    (void)go_on(&lidar);
+    (void)advance(&lidar);
     CLAIM(is_sound());
 }
 
