@@ -13,6 +13,7 @@
 #define CLOCK_AT_THE_BEGINNING 0xFFFFE000u /* It wraps around after eight seconds. */
 #define STOP 0x65u
 #define TIMER_US 10000u
+#define BYTE_US 44u
 #define SCANS 5u         /* In a row, before a wish counts as fulfilled. */
 #define IDLE_US 1500000u /* Idle, before it does. */
 /* Announced by LOST: a second after the last packet. A damaged one may hide it for 100 ms more,
@@ -40,13 +41,18 @@ static uint32_t port_now_ms(void *context)
 {
     const bed_t *const bed = context;
 
-    return bed_ms(bed) + CLOCK_AT_THE_BEGINNING;
+    const uint64_t us = bed->now_us * (uint64_t)(1000000 + bed->clock_ppm) / 1000000u;
+
+    return (uint32_t)(us / 1000u) + bed->clock_ms -
+           (bed->now_us >= bed->back_at_us ? bed->back_ms : 0);
 }
 
 void bed_prepare(bed_t *bed)
 {
     memset(bed, 0, sizeof *bed);
     bed->poll_ms = 1;
+    bed->grain_us = 50000; /* A line of a simulator holds 160 ms. */
+    bed->clock_ms = CLOCK_AT_THE_BEGINNING;
     bed->timing = tmini_timing_default;
     bed->config.rx_size = 1024;
     bed->config.max_points = sizeof bed->points / sizeof bed->points[0];
@@ -110,6 +116,7 @@ bool bed_restart(bed_t *bed)
 {
     bed->known = 0;
     bed->come = 0;
+    bed->published = 0;
     bed->dma_position = 0;
     bed->may_flow = false;
     bed->flows = false;
@@ -282,13 +289,40 @@ static void note_gaps(bed_t *bed)
 
 /* ---- Time ---- */
 
-static void hold(bed_held_t *held, const uint8_t *bytes, size_t count)
+static uint64_t arrived(const bed_t *bed)
 {
-    const size_t room = BED_HELD_MAX - held->count;
+    return bed->watch != NULL ? bed->watch->arrived : 0;
+}
+
+/* Of the bytes that have come, the last ones before `to`. */
+static void lose(bed_t *bed, size_t count, uint64_t to)
+{
+    if (bed->watch != NULL && count > 0) {
+        watch_lose(bed, to - count, to);
+    }
+}
+
+static void hold(bed_t *bed, const uint8_t *bytes, size_t count)
+{
+    bed_held_t *const held = bed->held;
+    const size_t size = held->size > 0 ? held->size : BED_HELD_MAX;
+    const size_t room = held->has_overflowed ? 0 : size - held->count;
     const size_t stored = count < room ? count : room;
 
     memcpy(held->bytes + held->count, bytes, stored);
     held->count += stored;
+    held->has_overflowed |= stored < count;
+    held->to = stored > 0 ? arrived(bed) - (count - stored) : held->to;
+    lose(bed, count - stored, arrived(bed));
+}
+
+static void report_gap(bed_t *bed)
+{
+    bed->gaps++;
+    tmini_feed_gap(&bed->lidar);
+    if (bed->reports_twice) {
+        tmini_feed_gap(&bed->lidar);
+    }
 }
 
 static void damage(bed_t *bed, uint8_t *bytes, size_t count)
@@ -302,8 +336,18 @@ static void damage(bed_t *bed, uint8_t *bytes, size_t count)
 
 static void publish(bed_t *bed)
 {
+    if (bed->published == bed->come) {
+        return; /* There was no interrupt. */
+    }
+    bed->published = bed->come;
+    if ((bed->is_half && bed->is_full) ||
+        (bed->false_gap_one_in > 0 && random_below(&bed->random, bed->false_gap_one_in) == 0)) {
+        report_gap(bed); /* As in a port: a lap may have been lost. */
+    }
+    bed->is_half = false;
+    bed->is_full = false;
     tmini_feed_dma(&bed->lidar, bed->dma_position);
-    bed->known = bed->come;
+    bed->known = bed->gaps > 0 ? tmini_feed_position(&bed->lidar) : bed->come;
 }
 
 /* Publishes in the interrupts for half transfer and transfer complete. */
@@ -311,15 +355,20 @@ static void write_by_dma(bed_t *bed, uint8_t byte)
 {
     bed->config.rx_buffer[bed->dma_position++] = byte;
     bed->come++;
-    if (bed->dma_position % (bed->config.rx_size / 2) == 0) {
-        bed->dma_position %= bed->config.rx_size;
+    bed->dma_position %= bed->config.rx_size;
+    bed->is_full |= bed->dma_position == 0;
+    bed->is_half |= bed->dma_position == bed->config.rx_size / 2;
+    if ((bed->is_half || bed->is_full) && !bed->is_stalled) {
         publish(bed);
     }
 }
 
-static void feed(bed_t *bed, const uint8_t *bytes, size_t count)
+/* The last ones before `to` of the bytes that have come. */
+static void feed(bed_t *bed, const uint8_t *bytes, size_t count, uint64_t to)
 {
-    (void)tmini_feed(&bed->lidar, bytes, count);
+    const size_t stored = tmini_feed(&bed->lidar, bytes, count);
+
+    lose(bed, count - stored, to);
     bed->known += count;
 }
 
@@ -336,13 +385,46 @@ static void receive(bed_t *bed, const uint8_t *bytes, size_t count)
         watch_arrive(bed, bytes, count);
     }
     if (bed->held != NULL) {
-        hold(bed->held, bytes, count);
+        hold(bed, bytes, count);
     } else if (!bed->config.rx_dma) {
-        feed(bed, bytes, count);
+        feed(bed, bytes, count, arrived(bed));
     } else {
         for (size_t i = 0; i < count; i++) {
             write_by_dma(bed, bytes[i]);
         }
+    }
+}
+
+/* As port/posix does. */
+static void read_held(bed_t *bed)
+{
+    bed_held_t *const held = bed->held;
+    const size_t room = held->ignores_room ? SIZE_MAX : tmini_feed_room(&bed->lidar);
+    const size_t count = held->count < room ? held->count : room;
+
+    held->count -= count;
+    feed(bed, held->bytes, count, held->to - held->count);
+    memmove(held->bytes, held->bytes + count, held->count);
+    if (held->has_overflowed && held->count == 0) {
+        held->has_overflowed = false;
+        report_gap(bed);
+    }
+    if (!held->is_mute) {
+        tmini_feed_held(&bed->lidar,
+                        held->count < held->reported_max ? held->count : held->reported_max);
+    }
+}
+
+static void read_in_time(bed_t *bed)
+{
+    bed_held_t *const held = bed->held;
+
+    if (held != NULL && held->every_us > 0 && held->due_us <= bed->now_us) {
+        read_held(bed);
+        held->due_us = bed->now_us +
+                       (held->late_one_in > 0 && random_below(&bed->random, held->late_one_in) == 0
+                            ? random_between(&bed->random, 20000, 95000)
+                            : held->every_us);
     }
 }
 
@@ -357,7 +439,8 @@ static void carry_bytes(bed_t *bed)
         damage(bed, bytes, count);
         receive(bed, bytes, count);
     }
-    if (bed->config.rx_dma && (bed->heard_us != bed->now_us || bed->now_us % TIMER_US == 0)) {
+    if (bed->config.rx_dma && !bed->is_stalled &&
+        (bed->heard_us != bed->now_us || bed->now_us % TIMER_US == 0)) {
         publish(bed);
     }
 }
@@ -374,29 +457,43 @@ static void empty_outbox(bed_t *bed)
     }
 }
 
-/* A line of a simulator holds 160 ms. */
-void bed_pause_ms(bed_t *bed, uint32_t ms)
+void bed_pass_us(bed_t *bed, uint64_t us)
 {
-    const uint64_t end_us = bed->now_us + ms * 1000u;
+    const uint64_t end_us = bed->now_us + us;
 
     while (bed->now_us < end_us) {
-        bed->now_us += end_us - bed->now_us < 50000u ? end_us - bed->now_us : 50000u;
+        bed->now_us += end_us - bed->now_us < bed->grain_us ? end_us - bed->now_us : bed->grain_us;
         carry_bytes(bed);
+        read_in_time(bed);
     }
 }
 
-/* As port/posix does. */
-static void read_held(bed_t *bed)
+void bed_pause_ms(bed_t *bed, uint32_t ms)
 {
-    bed_held_t *const held = bed->held;
-    const size_t room = tmini_feed_room(&bed->lidar);
-    const size_t count = held->count < room ? held->count : room;
+    bed_pass_us(bed, ms * UINT64_C(1000));
+}
 
-    feed(bed, held->bytes, count);
-    held->count -= count;
-    memmove(held->bytes, held->bytes + count, held->count);
-    tmini_feed_held(&bed->lidar,
-                    held->count < held->reported_max ? held->count : held->reported_max);
+void bed_stall(bed_t *bed, uint64_t bytes)
+{
+    const uint64_t enough = bed->come + bytes;
+    const uint64_t end_us = bed->now_us + 3000000u;
+
+    bed->is_stalled = true;
+    while (bed->come < enough && bed->now_us < end_us) {
+        bed_pass_us(bed, BYTE_US);
+    }
+    bed->is_stalled = false;
+    publish(bed);
+}
+
+static tmini_event_t poll_once(bed_t *bed)
+{
+    bed->polls++;
+    bed->known_at_poll = bed->known;
+    bed->is_polling = true;
+    const tmini_event_t event = tmini_poll(&bed->lidar);
+    bed->is_polling = false;
+    return event;
 }
 
 static void poll(bed_t *bed)
@@ -407,7 +504,7 @@ static void poll(bed_t *bed)
     if (bed->watch != NULL) {
         watch_before_polls(bed);
     }
-    while ((event = tmini_poll(&bed->lidar)) != TMINI_EVENT_NONE) {
+    while ((event = poll_once(bed)) != TMINI_EVENT_NONE) {
         note(bed, event);
     }
     if (bed->watch != NULL) {
@@ -431,9 +528,11 @@ static bool is_busy(bed_t *bed)
 void bed_step(bed_t *bed)
 {
     empty_outbox(bed);
-    bed->now_us += bed->poll_ms * 1000u + bed->later_us;
-    carry_bytes(bed);
-    if (bed->held != NULL) {
+    bed_pass_us(bed, bed->poll_ms * UINT64_C(1000) + bed->later_us);
+    if (bed->polls_first) {
+        poll(bed);
+    }
+    if (bed->held != NULL && bed->held->every_us == 0) {
         read_held(bed);
     }
     if (bed->watch != NULL) {

@@ -27,10 +27,19 @@ typedef struct {
     uint32_t stops_while_scanning;
 } bed_heard_t;
 
-/* Bytes that a system below the program holds; it reports at most `reported_max` of them. */
+/* Bytes that a system below the program holds; it reports at most `reported_max` of them. What
+ * overflows it is lost, and so is all that comes until it is empty. */
 typedef struct {
     size_t reported_max;
+    size_t size;          /* 0: BED_HELD_MAX. */
+    bool is_mute;         /* Reports nothing. */
+    bool ignores_room;    /* Hands over more than the ring may take. */
+    uint32_t every_us;    /* A task hands over this often. 0: the program does, before it polls. */
+    uint32_t late_one_in; /* One of these times in this many, 20 to 95 ms late. 0: none. */
     size_t count;
+    uint64_t to; /* Of the bytes that have come, it holds those before this one. */
+    bool has_overflowed;
+    uint64_t due_us;
     uint8_t bytes[BED_HELD_MAX];
 } bed_held_t;
 
@@ -47,7 +56,15 @@ struct bed {
     uint16_t busy_one_in; /* One poll in this many begins a busy period. 0: none. */
     uint16_t busy_ms;     /* The longest of these. */
     bed_held_t *held;     /* The caller's. NULL: bytes come by an interrupt, or by DMA. */
-    watch_t *watch;       /* The caller's. NULL: none. */
+    uint32_t grain_us;    /* Time passes in such steps; 50 ms. */
+    bool polls_first;     /* Also before the program fetches what is held. */
+    bool reports_twice;   /* Each loss. */
+    uint32_t false_gap_one_in; /* One DMA interrupt in this many reports none. 0: none does. */
+    uint32_t clock_ms;         /* The clock at the beginning, */
+    int32_t clock_ppm;         /* its error; positive: it is fast; */
+    uint32_t back_ms;          /* by how much it is set back once, */
+    uint64_t back_at_us;       /* and when. */
+    watch_t *watch;            /* The caller's. NULL: none. */
     /* Decides what spoils an event on the wire, as sim_observer_t. NULL: nothing. */
     sim_trouble_t (*spoil)(bed_t *bed, uint32_t *ms);
     tmini_config_t
@@ -61,10 +78,17 @@ struct bed {
     uint64_t now_us;
     uint8_t outbox[16]; /* Bytes that reach the lidar with the next step. */
     size_t outbox_count;
-    uint32_t sent;  /* Bytes to the lidar. */
-    uint64_t known; /* Bytes from it that the library knows of. */
-    uint64_t come;  /* And those that have come. */
+    uint32_t sent;      /* Bytes to the lidar. */
+    uint64_t known;     /* Bytes from it that the library knows of. */
+    uint64_t come;      /* And by DMA those that have come, */
+    uint64_t published; /* and that its interrupts have published. */
     size_t dma_position;
+    bool is_half, is_full; /* DMA interrupts that wait. */
+    bool is_stalled;       /* They have to. */
+    uint32_t gaps;         /* Losses that the receiver has reported. */
+    bool is_polling;       /* Inside tmini_poll(). */
+    uint32_t polls;
+    uint64_t known_at_poll; /* When the latest began. */
     uint64_t busy_until_us;
 
     bed_heard_t heard;    /* Since it was cleared. */
@@ -131,8 +155,12 @@ void bed_run_ms(bed_t *bed, uint32_t ms);
 unsigned bed_run_until(bed_t *bed, unsigned events, uint32_t ms);
 #define BIT(event) (1u << (event))
 
-/* The program does something else. */
+/* The program does something else, or (bed_pass_us()) is interrupted. */
 void bed_pause_ms(bed_t *bed, uint32_t ms);
+void bed_pass_us(bed_t *bed, uint64_t us);
+
+/* The processor stands still while DMA writes this many bytes, or for three seconds. */
+void bed_stall(bed_t *bed, uint64_t bytes);
 
 uint32_t bed_ms(const bed_t *bed);
 

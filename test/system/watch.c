@@ -11,11 +11,17 @@
 
 const char *watch_name(unsigned wrong)
 {
-    static const char *const names[WRONG_KINDS] = {
-        [WRONG_LOST_PACKET] = "packets lost",      [WRONG_BYTES] = "bytes not accounted for",
-        [WRONG_COMMAND] = "forbidden commands",    [WRONG_FALSE_FAULT] = "false faults",
-        [WRONG_MISSED_FAULT] = "missed faults",    [WRONG_ANSWER] = "wrong answers",
-        [WRONG_SLOW_RECOVERY] = "slow recoveries", [WRONG_STATE] = "impossible states"};
+    static const char *const names[WRONG_KINDS] = {[WRONG_LOST_PACKET] = "packets lost",
+                                                   [WRONG_BYTES] = "bytes not accounted for",
+                                                   [WRONG_COMMAND] = "forbidden commands",
+                                                   [WRONG_FALSE_FAULT] = "false faults",
+                                                   [WRONG_MISSED_FAULT] = "missed faults",
+                                                   [WRONG_ANSWER] = "wrong answers",
+                                                   [WRONG_SLOW_RECOVERY] = "slow recoveries",
+                                                   [WRONG_STATE] = "impossible states",
+                                                   [WRONG_REMAINDER] =
+                                                       "bytes still pending at the end",
+                                                   [WRONG_COST] = "whole turns not complete"};
 
     return wrong < SIM_LIES ? sim_lie_name((sim_lie_t)wrong) : names[wrong];
 }
@@ -42,11 +48,49 @@ static void pop(watch_t *watch)
     watch->count--;
 }
 
+/* A start packet also ends the turn before it. */
+static void touch(watch_t *watch, uint32_t turn, bool is_start)
+{
+    watch->turns[turn % WATCH_TURNS].is_touched = true;
+    watch->turns[(turn - 1u) % WATCH_TURNS].is_touched |= is_start;
+}
+
+static void note_turn(watch_t *watch, const sim_packet_t *packet, bool is_touched)
+{
+    watch_turn_t *const turn = &watch->turns[packet->revolution % WATCH_TURNS];
+
+    if (packet->starts_revolution) {
+        *turn = (watch_turn_t){0};
+    }
+    turn->samples += packet->bytes[3];
+    if (is_touched) {
+        touch(watch, packet->revolution, packet->starts_revolution);
+    }
+}
+
+void watch_lose(bed_t *bed, uint64_t from, uint64_t to)
+{
+    watch_t *const watch = bed->watch;
+
+    watch->lost_to = to > watch->lost_to ? to : watch->lost_to;
+    for (uint32_t i = 0; i < watch->count; i++) {
+        watch_packet_t *const packet = packet_at(watch, i);
+
+        if (packet->offset < to && packet->offset + packet->length > from) {
+            packet->is_lost = true;
+            touch(watch, packet->turn, packet->starts_revolution);
+        }
+    }
+}
+
+/* Its first bytes may have been lost by the receiver before its last ones come. */
 static void note_packet(void *context, const sim_link_packet_t *packet)
 {
     watch_t *const watch = context;
     const uint32_t place = sim_judge_sent(&watch->judge, &packet->sent);
+    const bool is_lost = packet->intact && watch->lost_to > packet->offset;
 
+    note_turn(watch, &packet->sent, !packet->intact || is_lost);
     if (!packet->intact) {
         return;
     }
@@ -57,6 +101,9 @@ static void note_packet(void *context, const sim_link_packet_t *packet)
         (watch_packet_t){.offset = packet->offset,
                          .length = packet->sent.length,
                          .starts_revolution = packet->sent.starts_revolution,
+                         .is_lost = is_lost,
+                         .turn = packet->sent.revolution,
+                         .at_us = watch->link.sim->now_us,
                          .place = place,
                          .samples = packet->sent.bytes[3]};
 }
@@ -117,13 +164,14 @@ static size_t latest_bytes(const watch_t *watch, uint8_t *bytes)
     return count;
 }
 
-/* Damage that leaves a checksum right cannot be seen. */
+/* Damage that leaves a checksum right cannot be seen. To look for it takes long: not for the tenth
+ * lie of a kind. */
 static void complain_unless_by_chance(bed_t *bed, sim_lie_t lie)
 {
     static uint8_t bytes[WATCH_HISTORY];
     const size_t count = latest_bytes(bed->watch, bytes);
 
-    if (sim_judge_knows(&bed->watch->judge, bytes, count)) {
+    if (bed->watch->counts.wrongs[lie] >= 10 || sim_judge_knows(&bed->watch->judge, bytes, count)) {
         watch_complain(bed, lie);
     } else {
         bed->watch->counts.by_chance++;
@@ -171,7 +219,7 @@ static bool is_due(bed_t *bed, const watch_packet_t *packet)
 
     watch->has_begun |= packet->starts_revolution || bed->config.max_points == 0;
     watch->counts.split += packet->is_split ? 1u : 0u;
-    return watch->has_begun && !packet->is_split && !watch->may_lose;
+    return watch->has_begun && !packet->is_split && !packet->is_lost && !watch->may_lose;
 }
 
 /* Packets that end at `end` or before must have been delivered, or, if `is_judged` is false, need
@@ -180,7 +228,8 @@ static void settle(bed_t *bed, uint64_t end, bool is_judged)
 {
     watch_t *const watch = bed->watch;
 
-    while (watch->count > 0 && packet_at(watch, 0)->offset + packet_at(watch, 0)->length <= end) {
+    while (!watch->is_trial && watch->count > 0 &&
+           packet_at(watch, 0)->offset + packet_at(watch, 0)->length <= end) {
         const watch_packet_t *const packet = packet_at(watch, 0);
 
         pop(watch);
@@ -226,8 +275,11 @@ static void check_scan(bed_t *bed)
 {
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
     const unsigned closing = TMINI_PACKET_SIZE(tmini_packet(&bed->lidar)->count);
-    const sim_reading_t reading = judge_scan(&bed->watch->judge, scan);
+    sim_reading_t reading = judge_scan(&bed->watch->judge, scan);
 
+    if (bed->watch->on_scan != NULL) {
+        bed->watch->on_scan(bed, &reading);
+    }
     judge_lies(bed, &reading);
     settle(bed, parsed(bed) - closing, scan->dropped == 0);
     bed->watch->has_begun = true;
@@ -395,6 +447,9 @@ static void check_bytes(bed_t *bed)
     tmini_counters_t counters;
 
     tmini_counters(&bed->lidar, &counters);
+    if (bed->known != bed->known_at_poll) {
+        return; /* Some came during the latest poll. */
+    }
     if (parsed(bed) - bed->watch->begun_at + counters.bytes_overrun + counters.bytes_pending !=
             bed->known ||
         (counters.bytes_overrun > 0 && !bed->watch->may_lose)) {
@@ -417,4 +472,38 @@ void watch_after_polls(bed_t *bed)
     if (bed->sim.counts.commands_while_scanning > watch->counts.wrongs[WRONG_COMMAND]) {
         watch_complain(bed, WRONG_COMMAND);
     }
+}
+
+/* ---- The end of a trial ---- */
+
+/* Each point of a packet without losses after the first such start packet must be in exactly one
+ * scan, unless the library counts it as withheld. The current, unfinished scan counts as one. */
+watch_end_t watch_end(bed_t *bed)
+{
+    watch_t *const watch = bed->watch;
+    const tmini_builder_t *const builder = &bed->lidar.decoder.builder;
+    watch_end_t end = {0};
+    tmini_counters_t counters;
+    bool has_begun = false;
+
+    tmini_counters(&bed->lidar, &counters);
+    if (counters.bytes_pending > 0) {
+        watch_complain(bed, WRONG_REMAINDER);
+    }
+    if (builder->open) {
+        sim_reading_t reading = judge_points(&watch->judge, &builder->scan);
+
+        reading.lies &= SIM_LIE(SIM_LIE_AGAIN);
+        judge_lies(bed, &reading);
+    }
+    for (uint32_t i = 0; i < watch->count; i++) {
+        const watch_packet_t *const packet = packet_at(watch, i);
+
+        has_begun |= packet->starts_revolution && !packet->is_lost;
+        if (has_begun && !packet->is_lost) {
+            end.intact += packet->samples;
+            end.in_one += sim_judge_in_one(&watch->judge, packet->place, packet->samples);
+        }
+    }
+    return end;
 }

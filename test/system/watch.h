@@ -12,6 +12,9 @@
  *   - a fault is reported exactly while it exists, within the time allowed;
  *   - after the last trouble packets come again within the time allowed.
  *
+ * Where the receiver loses bytes, packets with losses need not be delivered, and each of the others
+ * is judged at the end of a trial.
+ *
  * The lidar must be marked. */
 
 #ifndef WATCH_H
@@ -23,7 +26,8 @@
 #include "tmini/tmini.h"
 
 #define WATCH_PACKETS 1024u
-#define WATCH_HISTORY 16384u /* Bytes: 1.2 s of scanning. */
+#define WATCH_TURNS 32u
+#define WATCH_HISTORY 65536u /* Bytes: 5 s of scanning. */
 
 /* The time after the end of the last trouble in which scans must resume. In the worst case the
  * lidar returns just after a start was sent (timeout 2 s), the longest pause follows (4 s), then a
@@ -45,6 +49,8 @@ typedef enum {
     WRONG_ANSWER,        /* A command on an undisturbed line had no reply, or a wrong one. */
     WRONG_SLOW_RECOVERY, /* It took longer than WATCH_RECOVERY_MS after the last trouble. */
     WRONG_STATE,         /* An impossible state of the library. */
+    WRONG_REMAINDER,     /* Bytes are still pending after a long silence. */
+    WRONG_COST,          /* A turn without losses is not delivered as complete. */
     WRONG_KINDS
 } wrong_t;
 
@@ -53,7 +59,10 @@ typedef struct {
     uint64_t offset;
     uint16_t length;
     bool starts_revolution;
-    bool is_split;  /* A silence in its middle: the library gives it up. */
+    bool is_split; /* A silence in its middle: the library gives it up. */
+    bool is_lost;  /* The receiver has lost a part of it. */
+    uint32_t turn;
+    uint64_t at_us;
     uint32_t place; /* Of its first sample (sim_judge.h). */
     uint32_t samples;
 } watch_packet_t;
@@ -69,13 +78,27 @@ typedef struct {
 } watch_counts_t;
 
 typedef struct {
+    uint32_t samples;
+    bool is_touched; /* A byte of it, or of the next start packet, is lost. */
+    bool is_delivered;
+} watch_turn_t;
+
+typedef struct bed bed_t;
+
+typedef struct {
     /* To be set before bed_init(). */
     sim_link_config_t line;
     bool may_lose; /* Packets: the ring is too small, or the program too slow. */
+
+    /* For a trial of a few seconds: packets and turns are kept, and judged in the end. */
+    bool is_trial;
     bool (*loses)(void *context, const sim_run_t *run, size_t i); /* As sim_link_observer_t. */
+    void (*on_scan)(bed_t *bed, sim_reading_t *reading); /* May excuse a lie. NULL: nothing. */
 
     sim_link_t link;
     sim_judge_t judge;
+    watch_turn_t turns[WATCH_TURNS];
+    uint64_t lost_to;                      /* After the latest byte that the receiver has lost. */
     watch_packet_t packets[WATCH_PACKETS]; /* Not yet delivered, in order. */
     uint32_t first;
     uint32_t count;
@@ -95,17 +118,23 @@ typedef struct {
     const char *wrong; /* The first thing that was wrong; NULL: nothing. */
 } watch_t;
 
-typedef struct bed bed_t;
-
 /* Called by the bed: at its beginning; when the library was set up; for bytes that come; in each
  * step; before a round of polls, for each of its events, and after it. */
 void watch_begin(bed_t *bed);
 void watch_restart(bed_t *bed);
 void watch_arrive(bed_t *bed, const uint8_t *bytes, size_t count);
+void watch_lose(bed_t *bed, uint64_t from, uint64_t to); /* Of the bytes that have come. */
 void watch_step(bed_t *bed);
 void watch_before_polls(bed_t *bed);
 void watch_event(bed_t *bed, tmini_event_t event);
 void watch_after_polls(bed_t *bed);
+
+/* A trial ends, after a long silence. */
+typedef struct {
+    uint64_t intact; /* Points of packets without losses, */
+    uint64_t in_one; /* and those of them in exactly one scan. */
+} watch_end_t;
+watch_end_t watch_end(bed_t *bed);
 
 /* Counts what the test itself has found wrong. */
 void watch_complain(bed_t *bed, unsigned wrong);
