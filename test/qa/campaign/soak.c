@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* soak HOURS [SEED]
+/* campaign soak HOURS [SEED]
  *
  * Runs the library with the simulated lidar for HOURS of virtual time, half an hour for each of
  * many configurations, with all kinds of faults: on the line, in the lidar, in the program that
  * uses the library. Prints what happened. Exit status: 0 if the library did nothing wrong
  * (watch.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
+
+#include "soak.h"
 
 #include "bed.h"
 
@@ -399,12 +401,13 @@ static bool report(void)
     return is_right;
 }
 
-int main(int argc, char **argv)
+int soak(int argc, char **argv)
 {
     const double hours = argc > 1 ? strtod(argv[1], NULL) : 0;
     const uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
     if (argc > 3 || !(hours > 0 && hours <= MAX_HOURS)) {
-        fprintf(stderr, "usage: soak HOURS [SEED]: hours of virtual time, above 0 to 1000\n");
+        fprintf(stderr,
+                "usage: campaign soak HOURS [SEED]: hours of virtual time, above 0 to 1000\n");
         return 2;
     }
     const uint64_t all_ms = (uint64_t)(hours * 3600000.0);
