@@ -20,11 +20,6 @@
 
 /* ---- Ring, parser ---- */
 
-static bool is_dma(const tmini_ring_t *ring)
-{
-    return tmini_ring_is_dma(ring);
-}
-
 /* The producer writes up to its stop without checking. So there must be room up to it, and the
  * memory must not end before it. */
 static bool stop_is_sound(const tmini_ring_t *ring)
@@ -43,7 +38,7 @@ bool ring_is_sound(const tmini_ring_t *ring)
         (size & (size - 1)) != 0) {
         return false;
     }
-    if (is_dma(ring)) { /* The hardware may overrun the reader. */
+    if (tmini_ring_is_dma(ring)) { /* The hardware may overrun the reader. */
         return ring->window == size / 2 && ring->stop == ring->head;
     }
     return ring->window == size && stop_is_sound(ring) && tmini_ring_unread(ring) <= size &&
@@ -146,21 +141,10 @@ bool builder_is_sound(const tmini_builder_t *builder)
 
 static bool is_code(uint8_t code)
 {
-    switch (code) {
-    case TMINI_COMMAND_FASTER_TENTH:
-    case TMINI_COMMAND_SLOWER_TENTH:
-    case TMINI_COMMAND_FASTER_ONE:
-    case TMINI_COMMAND_SLOWER_ONE:
-    case TMINI_COMMAND_GET_FREQUENCY:
-    case TMINI_COMMAND_REBOOT:
-    case TMINI_COMMAND_START:
-    case TMINI_COMMAND_STOP:
-    case TMINI_COMMAND_GET_INFO:
-    case TMINI_COMMAND_GET_HEALTH:
-        return true;
-    default:
-        return false;
-    }
+    return (code >= TMINI_COMMAND_FASTER_TENTH && code <= TMINI_COMMAND_GET_FREQUENCY) ||
+           code == TMINI_COMMAND_REBOOT || code == TMINI_COMMAND_START ||
+           code == TMINI_COMMAND_STOP || code == TMINI_COMMAND_GET_INFO ||
+           code == TMINI_COMMAND_GET_HEALTH;
 }
 
 static bool is_step(uint8_t code)
