@@ -34,7 +34,7 @@
 #define CYCLES_PER_US (CLOCK_HZ / 1000000u)
 #define PORTS 3u
 #define QUEUE 2u
-#define CORE_BUFFER 64u /* Bytes that a bridge's core may hold. */
+#define CORE_BUFFER 64u    /* Bytes that a bridge's core may hold. */
 #define COMMAND_US 500000u /* When a bridge's computer starts the lidar. */
 #define GRACE_US 1500000u  /* Time for the sketch to print its next line. */
 #define LIMIT_US 60000000u

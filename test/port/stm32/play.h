@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* One of the STM32 ports on the model: what the tests of both ports share (every_port.h), and plays.
+/* One of the STM32 ports on the model: what the tests of both share (every_port.h), and plays.
  *
  * A play is a row of a table (rows.h), told in words, and plays for each way of receiving that it
  * names. The simulated lidar has no power: only what the play sends comes.
@@ -23,7 +23,7 @@
  *     served position                    interrupts; how many bytes the lidar has been given
  *     30( P +1 )      that many times
  *     FE NE           the next byte comes with this error; FEs, NEs, ORE, others: their numbers
- *     hold:700        interrupts are held back for 700 µs from now; held:700: until they have passed
+ *     hold:700        interrupts are held back for 700 µs; held:700: and this time passes
  *
  * more about the registers (play.c), and the port's own words. */
 

@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* A model of the hardware: one USART at 230400 baud with one DMA channel, on two interrupt lines
- * (machine.h has time, line and FIFO). Registers are accessed only by these functions: reading has side
- * effects. Each access takes some nanoseconds, in which interrupts may come.
+ * (machine.h has time, line and FIFO). Registers are accessed only by these functions: reading has
+ * side effects. Each access takes some nanoseconds, in which interrupts may come.
  *
  * Variants, by macros:
  *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;

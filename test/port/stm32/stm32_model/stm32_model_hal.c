@@ -483,7 +483,7 @@ uint32_t HAL_GetTick(void)
     return model.tick_ms;
 }
 
-/* -------------------------------------------------------------------------- what CubeMX generates */
+/* ------------------------------------------------------------------------ what CubeMX generates */
 
 UART_HandleTypeDef huart1;
 
