@@ -371,6 +371,17 @@ def tmini(start):
 
 
 @pytest.fixture
+def fails(tmini):
+    """fails(status, reason, *words): the tool ends like this, and prints nothing else; what it says."""
+    def check(status, reason, *words):
+        run = tmini(*words)
+        assert (run.status, run.out) == (status, "")
+        assert "tmini: " in run.err and reason in run.err, run.err
+        return run.err
+    return check
+
+
+@pytest.fixture
 def lidar(clock, environment, programs):
     """lidar(*options): the simulated lidar."""
     def begin(*options):

@@ -124,21 +124,6 @@ void test_a_slow_listener_loses_what_waits_and_is_told_so(void)
     }
 }
 
-void test_the_others_lose_nothing(void)
-{
-    uint8_t part[1000];
-    memset(part, '-', sizeof part);
-    TEST_ASSERT_EQUAL_INT(0, bridge_join(&bridge));
-    TEST_ASSERT_EQUAL_INT(1, bridge_join(&bridge));
-    for (int i = 0; i < 50; i++) {
-        bridge_pass(&bridge, 0, part, sizeof part);
-        take(1, SIZE_MAX);
-    }
-    TEST_ASSERT_EQUAL_size_t(50000, strlen(heard()));
-    TEST_ASSERT_GREATER_THAN_UINT32(0, bridge.listeners[0].stretches);
-    TEST_ASSERT_EQUAL_UINT32(0, bridge.listeners[1].stretches);
-}
-
 void test_a_loss_before_the_bridge_is_a_gap(void)
 {
     TEST_ASSERT_EQUAL_INT(0, bridge_join(&bridge));

@@ -25,17 +25,6 @@ THREE = packet([(1000, 10, 0), (0, 0, 0), (3000, 30, 2)], 224, 22912)  # 3.5 deg
 ONE_SCAN = START + THREE + START
 
 
-@pytest.fixture
-def fails(tmini):
-    """The tool must end with this status and a message that has this."""
-    def check(status, reason, *words, **options):
-        run = tmini(*words, **options)
-        assert run.status == status
-        assert "tmini: " in run.err and reason in run.err
-        return run
-    return check
-
-
 # ---- Rows, checked by another reading of the protocol
 
 
@@ -218,15 +207,17 @@ def test_a_timed_recording_that_ends_anywhere_is_not_damaged(tmini, folder, vers
 # ---- Nothing to decode, nowhere to print
 
 
-def test_what_cannot_be_read_or_written_is_named(fails, folder):
+def test_what_cannot_be_read_or_written_is_named(fails, tmini, folder):
     (folder / "empty").touch()
     fails(1, "nowhere.bin: No such file", "decode", "nowhere.bin")
     fails(1, "nowhere.bin: No such file", "plot", "nowhere.bin", "-o", "x.svg")
     fails(1, "is empty", "decode", "empty")
     fails(1, "Is a directory", "decode", "recordings")
-    assert fails(1, "no lidar packet", "decode", "recordings/README.md", "--csv").out == HEADER
     fails(1, "no lidar packet", "plot", "recordings/README.md", "-o", "x.svg")
-    fails(1, "cannot write /nowhere/stats", "decode", ROOM, "--csv", "--stats", "/nowhere/stats")
+    for reason, *words in (("no lidar packet", "recordings/README.md"),
+                           ("cannot write /nowhere/stats", ROOM, "--stats", "/nowhere/stats")):
+        run = tmini("decode", *words, "--csv")
+        assert run.status == 1 and run.out.startswith(HEADER) and reason in run.err
 
 
 # `head` closes the pipe early. A program that ignores SIGPIPE ends as one that it has ended, for the shell.
@@ -284,6 +275,18 @@ def test_a_long_recording_is_decoded_in_constant_memory(folder):
     (["help", "walk"], 'no command "walk"'),
     (["fly"], 'there is no command "fly"'),
     (["fly"], "`tmini help` lists them all"),
+    (["record", "x"], "-p /dev/ttyUSB0"),
+    *(([command], "-p /dev/ttyUSB0") for command in ("info", "health", "frequency", "reboot", "scan", "view")),
+    (["record", "-p", "x"], "record into which file?"),
+    (["view", "-p", "x", "file"], "view what?"),
+    *((["frequency", typed, "-p", "/dev/none"], "6 to 12 Hz") for typed in ("5.9", "12.1", "7.55", "nan", "7Hz")),
+    (["scan", "--mask", "a:1"], '"a:1" is not FROM:TO'),
+    (["scan", "--mask", "1:"], '"1:" is not FROM:TO'),
+    (["scan", "--front", "361"], '"361" is not'),
+    (["decode", "--mask", "1:2"], "decode has no option --mask"),
+    (["plot", ROOM, "-o", "picture.jpg"], "must end in .svg, .png or .pdf"),
+    (["plot", ROOM], "plot what, and into which picture"),
+    (["plot", ROOM, "-o", "x.svg", "--all", "--scan", "1"], "not both"),
 ])
 def test_wrong_usage_ends_with_2_and_says_why(fails, words, reason):
     fails(2, reason, *words)
