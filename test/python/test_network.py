@@ -105,14 +105,21 @@ def test_a_timed_stream_that_is_there_later_only_listens(sender, monkeypatch):
         return open_line(name)
 
     monkeypatch.setattr(tmini._lidar, "open_line", open_later)
-    with tmini.Lidar(sender.port, timeout=None, backlog=9999) as lidar:
+    with tmini.Lidar(sender.port, 8, timeout=None, backlog=9999) as lidar:
         assert [lidar.read(1000).number for _ in range(16)] == list(range(1, 17))
+        lidar.stop()
+        lidar.start()
+        next(scan for scan in lidar if len(sender.begun) > 4)
+    # A driver that waited for replies would open the line again and again.
+    assert all(after - before > 4 for before, after in zip(sender.begun[1:], sender.begun[2:]))
     assert sender.heard == b""
 
 
 def test_a_timed_stream_takes_no_frequency(sender):
-    with pytest.raises(tmini.LidarError, match="whose sender sets the frequency"):
+    with pytest.raises(tmini.LidarError, match="whose sender sets the frequency") as refused:
         tmini.Lidar(sender.port, frequency_hz=12)
+    sender.listener.settimeout(10)
+    assert sender.listener.recv(1) == b"" and refused  # It is closed, although the error refers to it.
     with tmini.Lidar(sender.port) as lidar, pytest.raises(tmini.LidarError, match="sends nothing"):
         lidar.set_frequency(6)
 
