@@ -543,7 +543,9 @@ static void be_silent(void)
     const uint32_t poll_ms = bed.poll_ms;
     program.access_ns = 0;
     bed.poll_ms = 10;
-    bed_run_ms(&bed, SILENCE_MS + bed.back_ms);
+    for (uint32_t ms = 0; ms < SILENCE_MS + bed.back_ms; ms += bed.poll_ms) {
+        bed_step(&bed); /* Work on a scan takes more time. */
+    }
     bed.poll_ms = poll_ms;
 }
 
