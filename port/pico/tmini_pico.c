@@ -32,7 +32,6 @@
 /* Bytes that one DMA channel transfers before the other takes over: a multiple of every ring's
  * size, so that each turn begins at the ring's beginning; below 2^28, the RP2350's limit. */
 #define TURN 0x08000000u
-#define COUNT_MASK (2 * TURN - 1)
 
 /* This many bytes may be on their way through the DMA controller, written but not counted yet. */
 #define IN_FLIGHT 16u
@@ -121,20 +120,15 @@ static uint32_t left_to_transfer(uint8_t channel)
     return dma_channel_hw_addr(channel)->transfer_count;
 }
 
-/* Bytes that DMA has written since the start, modulo 2 TURN. The active channel counts down to 0;
- * the other one is at 0. Between two turns both are at 0 for a moment. If they stay there, DMA
- * has been stopped, and the number is unknown. */
+/* Bytes that DMA has written since the start, modulo TURN. The active channel counts down to 0; the
+ * other one is at 0. Between two turns both are at 0 for a moment. If they stay there, DMA has been
+ * stopped, and the number is unknown. */
 static bool read_written(const tmini_pico_t *port, uint32_t *written)
 {
-    for (unsigned attempt = 0; attempt < 4; attempt++) {
-        const uint32_t first = left_to_transfer(port->channels[0]);
-        if (first != 0) {
-            *written = TURN - first;
-            return true;
-        }
-        const uint32_t second = left_to_transfer(port->channels[1]);
-        if (second != 0) {
-            *written = 2 * TURN - second;
+    for (unsigned attempt = 0; attempt < 8; attempt++) {
+        const uint32_t left = left_to_transfer(port->channels[attempt % 2]);
+        if (left != 0) {
+            *written = TURN - left;
             return true;
         }
     }
@@ -148,7 +142,7 @@ static bool read_unread(const tmini_pico_t *port, uint32_t *unread)
     if (!read_written(port, &written)) {
         return false;
     }
-    *unread = (written - port->taken) & COUNT_MASK;
+    *unread = (written - port->taken) & (TURN - 1);
     return true;
 }
 
