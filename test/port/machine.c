@@ -13,6 +13,8 @@
 
 #define STEP_US 40u
 #define LINE_BYTES 8192u
+#define SILENCE_US 10000u /* Longer than anything that follows from the last byte. */
+#define IDLE_MAX_US 1000000u
 
 machine_t machine;
 
@@ -128,6 +130,21 @@ void machine_step(uint32_t us)
 {
     advance(us * UINT64_C(1000), irq_serve);
     irq_serve();
+}
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+void machine_idle(uint64_t until_us)
+{
+    uint64_t end_us = machine.now_us + STEP_US;
+    if (machine_has_sent() && machine.now_us - machine.last_us > SILENCE_US) {
+        const uint64_t next_us = earlier(until_us, sim_next_us(&machine.lidar));
+        end_us = next_us < end_us ? end_us : earlier(next_us, machine.now_us + IDLE_MAX_US);
+    }
+    machine_step((uint32_t)(end_us - machine.now_us));
 }
 
 void machine_access(void)

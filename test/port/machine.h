@@ -52,7 +52,10 @@ void machine_new_lidar(const sim_observer_t *observer);
 void machine_step(uint32_t us);
 void machine_pass(uint32_t us);
 
-/* As above, but no interrupt is served meanwhile. */
+/* A step in which nothing runs: in silence to the lidar's next byte, but not beyond `until_us`. */
+void machine_idle(uint64_t until_us);
+
+/* As machine_pass(), but no interrupt is served meanwhile. */
 void machine_pass_held_up(uint32_t us);
 
 /* Bytes arrive now. The interrupt comes when the FIFO is full, and at the end. */

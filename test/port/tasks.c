@@ -12,7 +12,6 @@
 
 #define TASKS 4
 #define STACK_SIZE (256u * 1024u)
-#define STEP_US 40u
 
 static task_t tasks[TASKS];
 static char stacks[TASKS][STACK_SIZE];
@@ -77,6 +76,18 @@ static task_t *most_urgent(void)
     return chosen;
 }
 
+/* When the first of those that wait has waited long enough. */
+static uint64_t first_us(void)
+{
+    uint64_t first = UINT64_MAX;
+    for (int i = 0; i < TASKS; i++) {
+        if (tasks[i].used && !tasks[i].suspended && tasks[i].until_us < first) {
+            first = tasks[i].until_us;
+        }
+    }
+    return first;
+}
+
 void tasks_run(task_t *next)
 {
     task_t *const self = tasks_current;
@@ -111,7 +122,7 @@ void tasks_wait(uint64_t until_us, bool (*is_awaited)(const task_t *))
     self->is_awaited = is_awaited;
     do {
         while ((next = most_urgent()) == NULL) {
-            machine_step(STEP_US);
+            machine_idle(first_us());
         }
         tasks_run(next);
     } while (!is_ready(self));
