@@ -130,23 +130,6 @@ void test_the_polling_task_is_woken_once_per_64_bytes(void)
 
 /* ---------------------------------------------------------------------------- through a stream */
 
-/* In 60 ms 786 bytes arrive: more than rx_buffer holds. The stream keeps the rest. */
-void test_the_stream_keeps_bytes_for_which_the_lidar_has_no_room(void)
-{
-    tmini_counters_t counters;
-    receive_by_stream();
-    init_lidar(512);
-    start();
-    assert_true_scans(1, 2);
-    for (uint32_t revolution = 3; revolution < 8; revolution++) {
-        machine_pass(60000);
-        assert_true_scans(revolution, revolution);
-    }
-    tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-}
-
 /* In 300 ms 3930 bytes arrive, 13 in a millisecond; stream and rx_buffer together hold 2047. The
  * tasks go on at a tick. */
 void test_a_stream_that_overflows_is_one_gap(void)
