@@ -21,11 +21,11 @@
 static tmini_laser_config_t config;
 static tmini_laser_t laser;
 static tmini_laser_fields_t fields;
-static tmini_point_t points[POINTS + 4];
+static tmini_point_t points[POINTS + 5];
 static tmini_scan_t scan;
 static float ranges[RAYS];
 static float intensities[RAYS];
-static tmini_cloud_point_t cloud[POINTS + 4];
+static tmini_cloud_point_t cloud[POINTS + 5];
 
 void setUp(void)
 {
@@ -80,7 +80,7 @@ static const struct {
     {"turned", false, true, 0.48f, -180},
     {"mirrored", true, false, 0.48f, 0},
     {"mirrored and turned", true, true, 0.48f, -180},
-    {"begins at 2.9 degrees", false, false, 2.9f, 0},
+    {"begins at 3 degrees", false, false, 3, 0},
     {"begins at 4 degrees", false, false, 4, -3},
     {"begins at 116 degrees", false, false, 116, -115},
     {"the same, turned", false, true, 116, 65},
@@ -173,12 +173,12 @@ void test_the_times_of_a_turn_follow_from_its_end_and_its_frequency(void)
 void test_where_a_turn_overlaps_itself_each_ray_has_its_own_end(void)
 {
     add_turn(0);
-    for (size_t i = 0; i < 4; i++) {
+    for (size_t i = 0; i < 5; i++) {
         add(0.9f * (float)i, (uint16_t)(500u + i), 0);
     }
     convert();
     TEST_ASSERT_EQUAL_FLOAT(0.5f, ranges[0]);
-    for (size_t i = 1; i < 4; i++) {
+    for (size_t i = 1; i < 5; i++) {
         TEST_ASSERT_EQUAL_FLOAT((float)(1000u + i) / 1000.0f, ranges[RAYS - i]);
     }
 }

@@ -55,14 +55,15 @@ static const struct {
     {"frequency", 6.0, [](const Settings &s) { return s.frequency_chz == 600; }},
     {"frequency", 12.0, [](const Settings &s) { return s.frequency_chz == 1200; }},
     {"frequency", 8.26, [](const Settings &s) { return s.frequency_chz == 830; }},
-    {"rays", std::int64_t{720}, [](const Settings &s) { return s.laser.rays == 720; }},
+    {"rays", std::int64_t{36}, [](const Settings &s) { return s.laser.rays == 36; }},
+    {"rays", std::int64_t{1440}, [](const Settings &s) { return s.laser.rays == 1440; }},
     {"reversion", true, [](const Settings &s) { return s.laser.is_turned; }},
     {"inverted", false, [](const Settings &s) { return s.laser.is_mirrored; }},
     {"angle_min", -90.5, [](const Settings &s) { return s.laser.seen.from_deg == -90.5f; }},
     {"angle_max", std::int64_t{45}, [](const Settings &s) { return s.laser.seen.to_deg == 45; }},
     {"range_min", 0.03, [](const Settings &s) { return s.laser.min_mm == 30; }},
     {"range_min", std::int64_t{0}, [](const Settings &s) { return s.laser.min_mm == 0; }},
-    {"range_max", 64.0, [](const Settings &s) { return s.laser.max_mm == 64000; }},
+    {"range_max", 65.0, [](const Settings &s) { return s.laser.max_mm == 65000; }},
     {"invalid_range_is_inf", true, [](const Settings &s) { return s.laser.missing_inf; }},
     {"point_cloud", true, [](const Settings &s) { return s.point_cloud; }},
     {"publish_incomplete", true, [](const Settings &s) { return s.publish_incomplete; }},
@@ -124,13 +125,14 @@ TEST(what_cannot_be_is_refused_with_a_reason_and_changes_nothing)
 
 TEST(ignored_directions_are_pairs_between_commas)
 {
-    TEST_ASSERT_EQUAL_STRING("",
-                             put(settings, "ignore_array", Text(" -180,-150.5, 150 ,180")).c_str());
-    TEST_ASSERT_EQUAL_size_t(2, settings.laser.masked_count);
-    TEST_ASSERT_EQUAL_FLOAT(-180.0f, settings.laser.masked[0].from_deg);
-    TEST_ASSERT_EQUAL_FLOAT(-150.5f, settings.laser.masked[0].to_deg);
-    TEST_ASSERT_EQUAL_FLOAT(150.0f, settings.laser.masked[1].from_deg);
-    TEST_ASSERT_EQUAL_FLOAT(180.0f, settings.laser.masked[1].to_deg);
+    static const float expected[][2] = {{-180.0f, -150.5f}, {150.0f, 180.0f}, {7.0f, 7.0f}};
+    const Text pairs = " -180,-150.5, 150 ,180,7,7";
+    TEST_ASSERT_EQUAL_STRING("", put(settings, "ignore_array", pairs).c_str());
+    TEST_ASSERT_EQUAL_size_t(3, settings.laser.masked_count);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_FLOAT(expected[i][0], settings.laser.masked[i].from_deg);
+        TEST_ASSERT_EQUAL_FLOAT(expected[i][1], settings.laser.masked[i].to_deg);
+    }
     TEST_ASSERT_EQUAL_STRING("", put(settings, "ignore_array", Text("")).c_str());
     TEST_ASSERT_EQUAL_size_t(0, settings.laser.masked_count);
 }
@@ -272,23 +274,42 @@ static Text value_of(const Report &report, const char *name)
     return "missing";
 }
 
+static const struct {
+    const char *name;
+    const char *text;
+} values[] = {
+    {"state", "scanning"},
+    {"faults", "frequency"},
+    {"frequency, wanted", "10.0 Hz"},
+    {"frequency, measured", "9.0 Hz"},
+    {"scans published per second", "10.5"},
+    {"scans published", "31"},
+    {"scans complete", "20"},
+    {"scans incomplete", "3"},
+    {"age of the newest complete scan, ms", "70"},
+    {"wrong checksums", "4"},
+    {"bytes skipped", "7"},
+    {"bytes overrun", "8"},
+    {"losses", "5"},
+    {"reconnections", "6"},
+};
+
 TEST(values_are_totals_and_the_rate)
 {
     Report now = healthy(20);
+    now.faults = TMINI_FAULT_FREQUENCY;
+    now.measured_chz = 900;
     now.incomplete = 3;
     now.published = 31;
     now.counters.checksum_errors = 4;
+    now.counters.bytes_skipped = 7;
+    now.counters.bytes_overrun = 8;
     now.counters.losses = 5;
     now.age_ms = 70;
     now.reconnections = 6;
-    TEST_ASSERT_EQUAL_STRING("10.5", value_of(now, "scans published per second").c_str());
-    TEST_ASSERT_EQUAL_STRING("20", value_of(now, "scans complete").c_str());
-    TEST_ASSERT_EQUAL_STRING("3", value_of(now, "scans incomplete").c_str());
-    TEST_ASSERT_EQUAL_STRING("31", value_of(now, "scans published").c_str());
-    TEST_ASSERT_EQUAL_STRING("4", value_of(now, "wrong checksums").c_str());
-    TEST_ASSERT_EQUAL_STRING("5", value_of(now, "losses").c_str());
-    TEST_ASSERT_EQUAL_STRING("70", value_of(now, "age of the newest complete scan, ms").c_str());
-    TEST_ASSERT_EQUAL_STRING("6", value_of(now, "reconnections").c_str());
+    for (const auto &one : values) {
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(one.text, value_of(now, one.name).c_str(), one.name);
+    }
 }
 
 TEST(serial_number_and_firmware_are_known_from_an_answer_or_while_scanning)
