@@ -122,7 +122,8 @@ class Page(webdriver.Chrome):
     def save(self, button):
         """Clicks; returns name and content of the file that was saved, once it is complete."""
         def finished():
-            return [file for file in self.downloads.glob("tmini-*") if file.suffix != ".crdownload"]
+            files = list(self.downloads.glob("tmini-*"))  # At first there is an empty one of the final name, too.
+            return files if len(files) == 1 and files[0].suffix != ".crdownload" and files[0].stat().st_size else None
         self.click(button)
         (path,) = self.wait("a file", finished)
         content = path.read_bytes()
