@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The tmini authors
 
-// Stands in for navigator.serial, as Web Serial specifies it, with the simulated lidar at the
-// adapter. It runs before the page and makes its own instance of the library that the page contains.
+// Stands in for what the page uses of navigator.serial, as Web Serial specifies it, with the simulated
+// lidar at the adapter. It runs before the page and makes its own instance of the library that the page contains.
 // Tests control the adapter by `bench`:
 //
 //     bench.plug()  bench.unplug()         the cable
@@ -76,13 +76,10 @@ class Device {
 
 // [[state]], [[readFatal]] … are the specification's internal slots.
 class StandInPort extends EventTarget {
-    onconnect = null;
-    ondisconnect = null;
     #state = 'closed';
     #readable = null;
     #writable = null;
-    #readFatal = false;
-    #writeFatal = false;
+    #fatal = false; // [[readFatal]] and [[writeFatal]]: here both come only from a loss.
     #bufferSize = 0;
     #control = null;
     #writeControl = null;
@@ -123,13 +120,12 @@ class StandInPort extends EventTarget {
         bench.opened.push({ ...options });
         this.#state = 'opened';
         this.#bufferSize = options.bufferSize ?? 255;
-        this.#readFatal = false;
-        this.#writeFatal = false;
+        this.#fatal = false;
         this.#timer = setInterval(() => this.#arrive(), 8);
     }
 
     get readable() {
-        if (this.#readable === null && this.#state === 'opened' && !this.#readFatal) {
+        if (this.#readable === null && this.#state === 'opened' && !this.#fatal) {
             this.#readable = new ReadableStream({
                 type: 'bytes',
                 start: (control) => { this.#control = control; },
@@ -140,7 +136,7 @@ class StandInPort extends EventTarget {
     }
 
     get writable() {
-        if (this.#writable === null && this.#state === 'opened' && !this.#writeFatal) {
+        if (this.#writable === null && this.#state === 'opened' && !this.#fatal) {
             this.#writable = new WritableStream({
                 start: (control) => { this.#writeControl = control; },
                 write: (bytes) => {
@@ -157,12 +153,6 @@ class StandInPort extends EventTarget {
             });
         }
         return this.#writable;
-    }
-
-    async setSignals() {}
-
-    async getSignals() {
-        return { dataCarrierDetect: false, clearToSend: false, ringIndicator: false, dataSetReady: false };
     }
 
     // Fails if a stream is locked, because cancel() and abort() then fail.
@@ -182,10 +172,6 @@ class StandInPort extends EventTarget {
         this.#readable = null;
         this.#writable = null;
         this.#state = 'closed';
-    }
-
-    async forget() {
-        await this.close().catch(() => {});
     }
 
     // Puts the bytes that have come into the stream; if its buffer is too small, the stream fails.
@@ -218,8 +204,7 @@ class StandInPort extends EventTarget {
         this.#connected = false;
         clearInterval(this.#timer);
         if (this.#state === 'opened') {
-            this.#readFatal = true;
-            this.#writeFatal = true;
+            this.#fatal = true;
             if (this.#readable !== null) {
                 this.#control.error(lost());
                 this.#readable = null;
@@ -247,8 +232,6 @@ class StandInPort extends EventTarget {
 }
 
 class StandInSerial extends EventTarget {
-    onconnect = null;
-    ondisconnect = null;
     #port;
 
     constructor(port) {
@@ -287,10 +270,6 @@ class StandInSerial extends EventTarget {
     bench.leaveScanning = async () => {
         await device.ready();
         device.startByItself();
-    };
-    bench.members = {
-        Serial: StandInSerial.prototype,
-        SerialPort: StandInPort.prototype,
     };
     bench.port = port;
     window.bench = bench;
