@@ -502,7 +502,13 @@ watch_end_t watch_end(bed_t *bed)
         has_begun |= packet->starts_revolution && !packet->is_lost;
         if (has_begun && !packet->is_lost) {
             end.intact += packet->samples;
-            end.in_one += sim_judge_in_one(&watch->judge, packet->place, packet->samples);
+            const uint32_t in_one = sim_judge_in_one(&watch->judge, packet->place, packet->samples);
+
+            end.in_one += in_one;
+            if (in_one < packet->samples) {
+                bed_tell(bed, "not in one scan: packet of turn %u, come at %u ms", packet->turn,
+                         (unsigned)(packet->at_us / 1000u));
+            }
         }
     }
     return end;
