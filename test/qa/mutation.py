@@ -17,8 +17,8 @@ is an error if its mutant no longer exists or, without --sample, if a test notic
 
 With --results, a run that was stopped can be continued; FILE gets a line for each mutant: its fate, and the change.
 With --killers, all tests run for each mutant, and its fate names the test functions that fail, as "program:function",
-or "program:*" if the program crashes or does not end. At the end it prints how many mutants each function noticed alone,
-and the programs without such a function: ask this before you remove a test.
+or "program:*" if the program crashes or does not end. At the end it prints how many mutants each function noticed
+alone, and the programs without such a function: ask this before you remove a test.
 """
 
 import argparse

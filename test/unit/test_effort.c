@@ -53,12 +53,12 @@ static const row_t tales[] IN_FLASH = {
         "errors:376 ~100 drain"),
     ROW(garbage_without_a_candidate_is_bounded_too,
         "large 32( <zeros:256 ) !MORE skipped:1536 drain skipped:8192"),
-    /* Each costs 14 and two skipped bytes: 1536 / 16. LSN would be 85. The last 8 bytes are no whole
-     * header. */
+    /* Each costs 14 and two skipped bytes: 1536 / 16. LSN would be 85. The last 8 bytes are no
+     * whole header. */
     ROW(candidates_without_a_packet_are_bounded_too,
         "large 4096( <x:AA55 ) !MORE skipped:192 drain skipped:8184 errors:0"),
-    /* 99 candidates cost 14 and one skipped byte each. For the last one and the garbage after it, 51
-     * of 1536 are left. */
+    /* 99 candidates cost 14 and one skipped byte each. For the last one and the garbage after it,
+     * 51 of 1536 are left. */
     ROW(garbage_after_candidates_is_bounded_with_them,
         "large 100( <x:AA ) 31( <zeros:256 ) !MORE skipped:150 drain"),
     ROW(a_question_withdrawn_does_not_end_what_a_poll_has_left_over,

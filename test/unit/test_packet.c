@@ -62,9 +62,9 @@ static void open_packet(const uint8_t *packet, size_t size)
  *     none:19         there is no sample with this index
  *     count:19 …      see tell_word() */
 
-/* The same of a T-mini Pro at 9.9 Hz (model 150, firmware 1.0), the packets of the tests of the public
- * project tier4/ydlidar_driver: only values were taken. Each sample is flagged (section 9.9), and point
- * packets have CT information. */
+/* The same of a T-mini Pro at 9.9 Hz (model 150, firmware 1.0), the packets of the tests of the
+ * public project tier4/ydlidar_driver: only values were taken. Each sample is flagged (section
+ * 9.9), and point packets have CT information. */
 static const uint8_t pro_start[] = {0xAA, 0x55, 0xC7, 0x01, 0x01, 0x15, 0x01,
                                     0x15, 0x1B, 0x56, 0x14, 0x62, 0x02};
 static const uint8_t pro_points[] = {

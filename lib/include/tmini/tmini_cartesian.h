@@ -11,8 +11,8 @@
  *        y <---L               at.x_mm < 500 && abs(at.y_mm) < 200) { stop(); }
  *
  * A point without a range is at (0, 0): look at its distance first. The error is at most 1.2 mm at
- * 12 m, at every angle. Any context; no waiting; on a Cortex-M4 about 80 instructions per point, and
- * no division. A table takes 184 bytes, on AVR of RAM. */
+ * 12 m, at every angle. Any context; no waiting; on a Cortex-M4 about 80 instructions per point,
+ * and no division. A table takes 184 bytes, on AVR of RAM. */
 
 #ifndef TMINI_CARTESIAN_H
 #define TMINI_CARTESIAN_H
