@@ -213,15 +213,15 @@ class Unable(Exception):
     """An error that makes it impossible to test mutants."""
 
 
-def run(*words, seconds=1800):
+def run(*words, folder=None, seconds=1800):
     """Exit status and output. What it has started is ended with it, or after so many seconds."""
     def limit():
         os.setpgrp()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_CPU, (10, 10))  # Of a process: a loop may never end.
 
-    with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, errors="replace", preexec_fn=limit) as process:
+    with subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace", preexec_fn=limit) as process:
         try:
             return process.communicate(timeout=seconds)[0], process.returncode
         except subprocess.TimeoutExpired:
@@ -297,8 +297,11 @@ class Copy:
             file = os.path.relpath(os.path.realpath(entry["file"]), self.root)
             if wanted(file):
                 words = shlex.split(entry["command"])
-                words = words[:words.index("-o")] + ["-O2", "-g0", "-w", "-c", entry["file"], "-o", "-", "-S"]
-                found.append(subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False).stdout)
+                made = self.build / "optimised.o"
+                made.write_bytes(b"")
+                run(*words[:words.index("-o")], "-O2", "-g0", "-w", "-c", entry["file"], "-o", made,
+                    folder=entry["directory"])
+                found.append(made.read_bytes())
         return found if path.endswith((".c", ".cpp", ".h")) else (self.root / path).read_bytes()
 
     def is_same_code(self, mutant, original):
