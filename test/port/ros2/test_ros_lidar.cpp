@@ -3,6 +3,7 @@
 
 /* Tests the lidar's thread with the simulated lidar on a pseudo-terminal or a socket. */
 
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include <iterator>
 #include <string>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include "lidar.h"
@@ -174,7 +176,10 @@ TEST(scans_come_at_the_wished_frequency_and_stop_and_start_as_wished_until_the_e
         lidar.want_scans(true);
         observer->await_scans(2);
     }
-    simulator.end();
+    /* The stop has been sent; a simulator that the computer keeps waiting has yet to read it. */
+    for (int tries = 0; !is_lidar_idle() && tries < 600; tries++) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
     require(is_lidar_idle(), "the lidar is idle at the end");
 }
 
