@@ -175,7 +175,10 @@ unsigned sim_read_end(const sim_judge_t *judge, sim_reading_t *reading, bool com
     if (complete && (dropped > 0 || (lacks && !reading->is_hidden))) {
         reading->lies |= SIM_LIE(SIM_LIE_COMPLETE);
     }
-    if (lacks && gaps == 0 && dropped == 0 && !reading->is_hidden) {
+    /* From one start packet to the next the angle does not jump: if nothing else comes of a turn,
+     * its scan has no gap and is not complete. */
+    const bool is_told = gaps > 0 || dropped > 0 || (reading->points == 1 && !complete);
+    if (lacks && !is_told && !reading->is_hidden) {
         reading->lies |= SIM_LIE(SIM_LIE_SILENT);
     }
     return reading->lies;
