@@ -18,7 +18,8 @@ function(tmini_download_cmock out)
     include(FetchContent)
     # Release v2.6.0; its submodule is Unity v2.6.1.
     FetchContent_Declare(cmock GIT_REPOSITORY https://github.com/ThrowTheSwitch/CMock.git
-        GIT_TAG 49435d9f3313abb3422252d3d2dc12a7542332ca GIT_SUBMODULES vendor/unity)
+        GIT_TAG 49435d9f3313abb3422252d3d2dc12a7542332ca GIT_SUBMODULES vendor/unity
+        SOURCE_SUBDIR lib) # Its own CMakeLists.txt is not wanted.
     FetchContent_MakeAvailable(cmock)
     set(${out} ${cmock_SOURCE_DIR} PARENT_SCOPE)
 endfunction()
