@@ -186,7 +186,7 @@ typedef struct {
 } trail_t;
 
 static trail_t trails[DEPTH_MAX];
-static uint32_t every = 1; /* Of the last troubles, one in so many is played. */
+static uint32_t every; /* Of the last troubles, one in so many is played. */
 static uint64_t last_troubles;
 static uint64_t runs;
 static uint64_t failures;
@@ -381,23 +381,26 @@ static void prepare_trails(uint32_t depth)
     }
 }
 
+/* The number after this option, if the option comes next. */
+static uint32_t option(int argc, char **argv, int *next, const char *name, uint32_t otherwise)
+{
+    if (argc <= *next + 1 || strcmp(argv[*next], name) != 0) {
+        return otherwise;
+    }
+    *next += 2;
+    return (uint32_t)strtoul(argv[*next - 1], NULL, 10);
+}
+
 int main(int argc, char **argv)
 {
-    uint32_t depth = 2;
     int first = 1;
     bool is_right = true;
 
     if (argc > first && strcmp(argv[first], "--replay") == 0) {
         return replay(argc - 2, argv + 2);
     }
-    if (argc > first + 1 && strcmp(argv[first], "--depth") == 0) {
-        depth = (uint32_t)strtoul(argv[first + 1], NULL, 10);
-        first += 2;
-    }
-    if (argc > first + 1 && strcmp(argv[first], "--every") == 0) {
-        every = (uint32_t)strtoul(argv[first + 1], NULL, 10);
-        first += 2;
-    }
+    const uint32_t depth = option(argc, argv, &first, "--depth", 2);
+    every = option(argc, argv, &first, "--every", 1);
     if (depth == 0 || depth > DEPTH_MAX || every == 0) {
         printf("1 to %u troubles, every from 1\n", DEPTH_MAX);
         return 2;
