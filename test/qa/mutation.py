@@ -40,22 +40,22 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 KNOWN = ROOT / "test" / "qa" / "mutants.txt"
 
-# Where a change is, and which tests of ctest must notice it. {0} is what the first group of the pattern matches.
-# What depends on the real time may fail once.
+# Where a change is, ctest's options for the tests that must notice it, and how often a test may be tried: what depends
+# on the real time may fail once. {0} is what the first group of the pattern matches.
 PLACES = [
-    ("lib/", "-L ^unit$"),
-    ("port/stm32/|examples/stm32_", "-R ^test_(port|example)_stm32"),
-    ("port/esp32/|examples/esp32_idf/", "-R ^test_(port_esp32|bridge_web|example_esp32)"),
-    ("port/arduino/|examples/esp32_arduino/", "-R ^test_arduino"),
-    ("(?:port|examples)/(freertos|pico|zephyr|template)/", "-R ^test_(port|device|example)_{0}"),
-    ("port/ros2/|examples/micro_ros/", "-R ^test_(laser|ros_.*|example_laser_scan|example_scan_node)$"),
-    ("port/python/tmini/", "-R ^python$ --repeat until-pass:2"),
-    ("examples/mavlink/", "-R ^mavlink$"),
-    ("examples/web/page/", "-L ^browser$ --repeat until-pass:2"),
-    ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$ --repeat until-pass:2"),
-    ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$ --repeat until-pass:2"),
-    ("test/simulator/", "-R ^(test_simulator|host[.].*)$ --repeat until-pass:2"),
-    ("examples/(host|bridge)/", "-L ^host$ --repeat until-pass:2"),
+    ("lib/", "-L ^unit$", 1),
+    ("port/stm32/|examples/stm32_", "-R ^test_(port|example)_stm32", 1),
+    ("port/esp32/|examples/esp32_idf/", "-R ^test_(port_esp32|bridge_web|example_esp32)", 1),
+    ("port/arduino/|examples/esp32_arduino/", "-R ^test_arduino", 1),
+    ("(?:port|examples)/(freertos|pico|zephyr|template)/", "-R ^test_(port|device|example)_{0}", 1),
+    ("port/ros2/|examples/micro_ros/", "-R ^test_(laser|ros_.*|example_laser_scan|example_scan_node)$", 1),
+    ("port/python/tmini/", "-R ^python$", 2),
+    ("examples/mavlink/", "-R ^mavlink$", 1),
+    ("examples/web/page/", "-L ^browser$", 2),
+    ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$", 2),
+    ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$", 2),
+    ("test/simulator/", "-R ^(test_simulator|host[.].*)$", 2),
+    ("examples/(host|bridge)/", "-L ^host$", 2),
 ]
 
 # Patterns and their replacements: operators and constants that programmers often confuse.
@@ -189,7 +189,7 @@ def sources_among(names):
         path = Path(name).resolve()
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
             relative = str(file.relative_to(ROOT))
-            if file == path or file.suffix in (".c", ".cpp", ".h", ".py", ".js") and selection(relative) and \
+            if file == path or file.suffix in (".c", ".cpp", ".h", ".py", ".js") and place_of(relative) and \
                     not file.name.startswith("test_") and \
                     (relative.startswith("lib/include/") or has_functions(file)):
                 yield relative
@@ -199,19 +199,15 @@ def has_functions(path):
     return re.search(r"^\{|^\s*(?:async )?(?:def|function) ", path.read_text(encoding="utf-8"), re.MULTILINE)
 
 
-def selection(path):
-    """ctest's options that select the tests of a source."""
-    for pattern, options in PLACES:
+def place_of(path):
+    """ctest's options for the tests of a source, and how often one may be tried; or None."""
+    for pattern, options, tries in PLACES:
         if match := re.match(pattern, path):
-            return options.format(*match.groups()).split()
+            return tuple(options.format(*match.groups()).split()), tries
     return None
 
 
 # ---- Trying them ----
-
-class Unable(Exception):
-    """An error that makes it impossible to test mutants."""
-
 
 def run(*words, folder=None, seconds=1800):
     """Exit status and output. What it has started is ended with it, or after so many seconds."""
@@ -242,7 +238,7 @@ class Copy:
                              "-DTMINI_BUILD_EXAMPLES=ON", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
                              "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DCMAKE_CXX_FLAGS_DEBUG=-O1")
         if status != 0:
-            raise Unable(output)
+            sys.exit(output)
         self.targets = set(re.findall(r"^build ([\w.-]+): phony", (self.build / "build.ninja").read_text(), re.M))
         self.commands = json.loads((self.build / "compile_commands.json").read_text())
         self.tests_by_options, self.original_code = {}, {}
@@ -259,7 +255,7 @@ class Copy:
 
     def tests_of(self, path):
         """The names of the tests of a source, and for each what Ninja must build. They pass without any mutant."""
-        options = tuple(selection(path))
+        options, _ = place_of(path)
         if options not in self.tests_by_options:
             listed, _ = run("ctest", "--test-dir", self.build, "-C", "All", "--show-only=json-v1", *options)
             self.tests_by_options[options] = tests = {}
@@ -268,7 +264,7 @@ class Copy:
                 name = test["name"]
                 tests[name] = name if name in self.targets else "tests-" + label
             if not self.has_built(tests.values()) or self.failures(path, tests):
-                raise Unable(f"without any mutant, there are failures among {' '.join(tests)}")
+                sys.exit(f"without any mutant, there are failures among {' '.join(tests)}")
         return self.tests_by_options[options]
 
     def has_built(self, targets):
@@ -278,10 +274,11 @@ class Copy:
         """The test functions that fail, as "program:function"."""
         if not tests:
             return []
-        more = [] if self.are_all_wanted else ["--stop-on-failure"]
-        repeat = selection(path)[2:]
+        _, tries = place_of(path)
+        more = ["--repeat", f"until-pass:{tries}"] if tries > 1 else []
+        more += [] if self.are_all_wanted else ["--stop-on-failure"]
         output, _ = run("ctest", "--test-dir", self.build, "-C", "All", "-j", self.jobs, "--output-on-failure",
-                        "-R", f"^({'|'.join(map(re.escape, tests))})$", *repeat, *more)
+                        "-R", f"^({'|'.join(map(re.escape, tests))})$", *more)
         functions = collections.defaultdict(list)
         for name, text in re.findall(r"^ *\d+/\d+ Test +#\d+: (\S+) (.*?)(?=^ *\d+/\d+ Test|^\d+% tests)", output,
                                      re.DOTALL | re.MULTILINE):
