@@ -199,6 +199,7 @@ static const row_t rows[] IN_FLASH = {
         "look:50:0 heard:0 silent:50 10-hz look:51:0 silent:50 10-hz look:256:0 silent:50 10-hz "
         "look:65536:0 heard:0 silent:50"),
     ROW(silence_counts_up_to_65535_ms, "silence:65500 look:50:0 silent:65535"),
+    ROW(a_clock_that_wraps_to_0_goes_on, "look:4294962295:0 look:1:0 now-ms:1 look:-8:0 now-ms:1"),
     ROW(a_clock_may_step_back_by_a_second, "look:-1000:0 now-ms:5000 look:-1:0 now-ms:3999"),
     /* More than a second does not count as a step back. */
     ROW(a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence,

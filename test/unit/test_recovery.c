@@ -141,7 +141,7 @@ static const row_t tales[] IN_FLASH = {
         "idle info >90 !NONE next:2000 ~500 next:1500 ~1600 next:0 >65"),
     ROW(an_event_or_a_byte_that_waits_for_the_port_is_polled_at_once,
         "idle takes:0 info next:1 takes:2 >90 !NONE next:2000 <info !INFO next:0 !NONE info >90 "
-        "stop >65 next:0 !FAILED +50 !STOPPED"),
+        "takes:0 stop next:0 !FAILED takes:2 >65 +50 !STOPPED"),
     ROW(a_task_sleeps_until_a_candidate_is_given_up,
         "scans !NONE next:1000 <x:AA ~10 !NONE next:50 ~50 !NONE next:50 ~10 !NONE next:40 ~50 "
         "next:0"),
