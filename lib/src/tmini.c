@@ -270,20 +270,27 @@ static void begin_stop(tmini_t *lidar)
     }
 }
 
-/* A question, or a reboot. */
-static tmini_status_t take_question(tmini_t *lidar, tmini_event_t event)
+/* To start, a question, or a reboot. */
+static tmini_status_t take_wish(tmini_t *lidar, tmini_event_t event)
 {
     if (!is_set_up(lidar)) {
         return TMINI_ERROR_ARGUMENT;
     }
-    if (lidar->is_listen_only) {
+    if (event == TMINI_EVENT_STARTED) {
+        if (is_to_scan(lidar)) {
+            return TMINI_OK;
+        }
+        tmini_recovery_reset(lidar);
+    } else if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
-    }
-    if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
+    } else if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
         return TMINI_ERROR_STATE;
     }
     look(lidar);
     drop_events(lidar, BIT(event));
+    if (lidar->recovery.is_lost) { /* It only listens, because recovery is off. */
+        tmini_command_end(lidar, TMINI_ERROR_ABORTED);
+    }
     tmini_recovery_wish(lidar, event);
     act(lidar);
     return TMINI_OK;
@@ -650,20 +657,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
 
 tmini_status_t tmini_start(tmini_t *lidar)
 {
-    if (!is_set_up(lidar)) {
-        return TMINI_ERROR_ARGUMENT;
-    }
-    if (!is_to_scan(lidar)) {
-        look(lidar);
-        drop_events(lidar, BIT(TMINI_EVENT_STARTED));
-        if (lidar->recovery.is_lost) { /* It only listens, because recovery is off. */
-            tmini_command_end(lidar, TMINI_ERROR_ABORTED);
-        }
-        tmini_recovery_wish(lidar, TMINI_EVENT_STARTED);
-        tmini_recovery_reset(lidar);
-        act(lidar);
-    }
-    return TMINI_OK;
+    return take_wish(lidar, TMINI_EVENT_STARTED);
 }
 
 tmini_status_t tmini_stop(tmini_t *lidar)
@@ -702,7 +696,7 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
         tmini_monitor_forget_frequency(&lidar->monitor);
     }
     if (!tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {
-        return take_question(lidar, TMINI_EVENT_FREQUENCY);
+        return take_wish(lidar, TMINI_EVENT_FREQUENCY);
     }
     if (is_new) {
         tmini_monitor_await_still(&lidar->monitor);
@@ -712,22 +706,22 @@ tmini_status_t tmini_set_frequency(tmini_t *lidar, uint16_t frequency_chz)
 
 tmini_status_t tmini_request_info(tmini_t *lidar)
 {
-    return take_question(lidar, TMINI_EVENT_INFO);
+    return take_wish(lidar, TMINI_EVENT_INFO);
 }
 
 tmini_status_t tmini_request_health(tmini_t *lidar)
 {
-    return take_question(lidar, TMINI_EVENT_HEALTH);
+    return take_wish(lidar, TMINI_EVENT_HEALTH);
 }
 
 tmini_status_t tmini_request_frequency(tmini_t *lidar)
 {
-    return take_question(lidar, TMINI_EVENT_FREQUENCY);
+    return take_wish(lidar, TMINI_EVENT_FREQUENCY);
 }
 
 tmini_status_t tmini_reboot(tmini_t *lidar)
 {
-    return take_question(lidar, TMINI_EVENT_REBOOTED);
+    return take_wish(lidar, TMINI_EVENT_REBOOTED);
 }
 
 void tmini_withdraw(tmini_t *lidar, tmini_event_t query)
