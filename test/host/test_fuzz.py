@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Random command lines, recordings and reports: no signal ever ends the tool or tmini-sim, and exit status and message
-are the right ones. What a command accepts is read from its help, as a person does.
+"""All options of all commands, and random command lines, recordings and reports: no signal ever ends the tool or
+tmini-sim, and exit status and message are the right ones. What a command accepts is read from its help, as a person
+does.
 
 TMINI_FUZZ: how many command lines; SEED: of all that is random."""
 
@@ -22,7 +23,7 @@ SEED = int(os.environ.get("SEED", 1))
 
 # Values of options, by their names in the help: right ones and wrong ones.
 VALUES = {
-    "PORT": (["/dev/none", "tcp:127.0.0.1:1"], []),
+    "": ([""], []),
     "N": (["1", "7", "80"], ["", "-1", "x", "1.5", "1e1", "0x7", "7 ", "99999999999999999999"]),
     "DEG": (["0", "90", "-90", "359.5"], ["", "x", "nan", "90x", "1e9"]),
     "MM": (["0", "12", "-12"], ["", "x", "1e9"]),
@@ -34,13 +35,28 @@ COMPLETE = {
     "info": [], "health": [], "frequency": ["7.5"], "reboot": [], "scan": [], "check": [], "record": ["x.bin"],
     "decode": ["nowhere.bin"], "plot": ["nowhere.bin", "-o", "x.svg"], "view": ["nowhere.bin"],
 }
-TOGETHER = [{"csv", "json"}, {"all", "scan"}]  # Not both.
-NEVER = {"help", "version", "wait", "output"}  # Would end well, never end, or come twice.
+NEVER = {"help", "version", "wait"}  # Would end well, or never end.
 
 
 def call(program, words, **options):
     return subprocess.run([program, *words], stdin=subprocess.DEVNULL, capture_output=True, timeout=60, check=False,
                           **options)
+
+
+@pytest.fixture
+def ends(environment, monkeypatch):
+    """ends(statuses, message, words): fails unless the tool ends like this."""
+    monkeypatch.setenv("TMINI_PORT", "/dev/none")
+    settings = {name: value for name, value in environment().items() if name != "LD_PRELOAD"}
+
+    def check(statuses, message, words):
+        run = call(TMINI, words, env=settings)
+        errors = run.stderr.decode(errors="replace")
+        what = f"{words}: {run.returncode}, {errors}"
+        assert run.returncode in statuses, what
+        assert run.returncode == 0 or errors.startswith("tmini: ") and message in errors, what
+        assert run.returncode != 2 or run.stdout == b"", what
+    return check
 
 
 def options_of(command):
@@ -52,73 +68,47 @@ def options_of(command):
 
 @pytest.fixture(scope="module")
 def known():
-    return {command: options_of(command) for command in COMPLETE}
+    return {command: [option for option in options_of(command) if option[2] in VALUES] for command in COMPLETE}
 
 
 @pytest.fixture(scope="module")
 def names():
     """Of all options: they may be shortened as long as they stay different."""
     commands = re.findall(r"^  tmini (\w+)", call(TMINI, ["help"]).stdout.decode(), re.MULTILINE)
-    return sorted({option[0] for command in commands for option in options_of(command)})
+    return {option[0] for command in commands for option in options_of(command)}
 
 
-def spelt(draw, option, value, names):
-    """One of the ways to write an option."""
+def ways(option, value, names):
+    """All ways to write an option."""
     name, letter, kind = option
-    shortest = next(i for i in range(1, len(name) + 1)
-                    if i == len(name) or sum(other.startswith(name[:i]) for other in names) == 1)
-    long = "--" + name[:draw.randint(shortest, len(name))]
-    if not kind:
-        return draw.choice([[long], ["-" + letter]] if letter else [[long]])
-    ways = [[long, value], [f"{long}={value}"]] + ([["-" + letter, value]] if letter else [])
-    return draw.choice(ways + ([["-" + letter + value]] if letter and value else []))
+    shortened = [name[:end] for end in range(1, len(name)) if sum(other.startswith(name[:end]) for other in names) == 1]
+    for long in ["--" + word for word in [*shortened, name]]:
+        yield from ([long, value], [f"{long}={value}"]) if kind else ([long],)
+    if letter:
+        yield from (["-" + letter, value], ["-" + letter + value]) if kind else (["-" + letter],)
 
 
-def mixed(draw, groups):
-    """The groups in any order; words of a group stay together."""
-    draw.shuffle(groups)
-    return [word for group in groups for word in group]
+@pytest.mark.parametrize("command", COMPLETE)
+def test_each_option_is_taken_in_each_way_to_write_it(ends, known, names, command):
+    complete = [command, *COMPLETE[command]]
+    for option in known[command]:
+        for value in VALUES[option[2]][0] if option[0] not in NEVER else ():
+            for way in ways(option, value, names):
+                ends((1,), "", [*complete, *way])
+                ends((1,), "", [*way, *complete])
 
 
-def right_line(draw, known, names):
-    """A right line as groups of words, the command's name first."""
-    command = draw.choice(list(COMPLETE))
-    usable = [option for option in known[command] if option[0] not in NEVER and (not option[2] or option[2] in VALUES)]
-    chosen = [option for option in draw.sample(usable, draw.randint(0, min(4, len(usable)))) if option[0] != "port"]
-    for pair in TOGETHER:
-        while len([option for option in chosen if option[0] in pair]) > 1:
-            chosen.remove(next(option for option in chosen if option[0] in pair))
-    groups = [spelt(draw, option, draw.choice(VALUES[option[2]][0]) if option[2] else "", names) for option in chosen]
-    if any(option[0] == "port" for option in known[command]) and command not in ("plot", "view"):
-        groups.append(["-p", "/dev/none"])
-    operands = COMPLETE[command]
-    groups += [operands[:1]] * bool(operands) + [operands[1:]] * (len(operands) > 1)
-    return command, groups
-
-
-# Each with its message.
-def wrong_line(draw, known, names):
-    command, groups = right_line(draw, known, names)
-    valued = [option for option in known[command] if VALUES.get(option[2], ("", ""))[1]]
-    foreign = [option for options in known.values() for option in options
-               if option[0] not in {own[0] for own in known[command]} and (not option[2] or option[2] in VALUES)]
-    kinds = ["option", "letter", "word"] + ["value", "missing"] * bool(valued) + ["foreign"] * bool(foreign)
-    kind = draw.choice(kinds)
-    if kind == "option":
-        return [command, *mixed(draw, [*groups, ["--frobnicate"]])], "--frobnicate"
-    if kind == "letter":
-        return [command, *mixed(draw, [*groups, ["-Z"]])], "-Z"
-    if kind == "word":
-        return [command, *mixed(draw, groups), "one", "two"], "unexpected"
-    if kind == "foreign":
-        option = draw.choice(foreign)
-        value = draw.choice(VALUES[option[2]][0]) if option[2] else ""
-        return [command, *mixed(draw, [*groups, spelt(draw, option, value, names)])], f"no option --{option[0]}"
-    option = draw.choice(valued)
-    if kind == "missing":
-        return [command, *mixed(draw, groups), "--" + option[0]], f"--{option[0]} needs a value"
-    value = draw.choice(VALUES[option[2]][1])
-    return [command, *mixed(draw, [*groups, [f"--{option[0]}={value}"]])], f"--{option[0]}"
+@pytest.mark.parametrize("command", COMPLETE)
+def test_each_wrong_option_is_named(ends, known, command):
+    wrong = [("--frobnicate", "--frobnicate"), ("-Z", "-Z"), ("words", "unexpected")]
+    for name, _, kind in known[command]:
+        wrong += [(f"--{name}={value}", f"--{name}") for value in VALUES[kind][1]]
+        wrong += [(f"--{name}", f"--{name} needs a value")] * bool(kind)
+    own = {option[0] for option in known[command]}
+    wrong += [(f"--{name}={VALUES[kind][0][0]}".rstrip("="), f"no option --{name}")
+              for options in known.values() for name, _, kind in options if name not in own]
+    for word, message in wrong:
+        ends((2,), message, [command, *COMPLETE[command], *[word] * (2 if word == "words" else 1)])
 
 
 PIECES = ["scan", "decode", "record", "plot", "help", "version", "-", "--", "-p", "/dev/none", "-n", "--csv", "--json",
@@ -126,28 +116,11 @@ PIECES = ["scan", "decode", "record", "plot", "help", "version", "-", "--", "-p"
           "--mask", "1:2", "--front", "-V", "-h", "ports", "A" * 300, "\udcff\udcc3", "--max-samples", "ü", "\x1b[2J"]
 
 
-def random_line(draw):
-    words = ["".join(draw.choices(PIECES, k=draw.choice([1, 1, 1, 2]))) for _ in range(draw.randint(0, 7))]
-    return [word for word in words if not word.startswith("--w")]  # To wait would not end.
-
-
-def test_any_command_line_has_the_right_status_and_message(known, names, environment):
+def test_any_command_line_ends_with_a_status_and_a_message(ends):
     draw = random.Random(SEED)
-    settings = {name: value for name, value in environment().items() if name != "LD_PRELOAD"}
     for _ in range(LINES):
-        kind = draw.choice(["right", "wrong", "random"])
-        words, message = random_line(draw), "tmini: "
-        if kind == "right":
-            command, groups = right_line(draw, known, names)
-            words, message = [command, *mixed(draw, groups)], ""
-        elif kind == "wrong":
-            words, message = wrong_line(draw, known, names)
-        run = call(TMINI, words, env=settings)
-        errors = run.stderr.decode(errors="replace")
-        what = f"{words}: {run.returncode}, {errors}"
-        assert run.returncode in {"right": (1,), "wrong": (2,), "random": (0, 1, 2)}[kind], what
-        assert run.returncode == 0 or errors.startswith("tmini: ") and message in errors, what
-        assert run.returncode != 2 or run.stdout == b"", what
+        words = ["".join(draw.choices(PIECES, k=draw.choice([1, 1, 1, 2]))) for _ in range(draw.randint(0, 7))]
+        ends((0, 1, 2), "", [word for word in words if not word.startswith("--w")])  # To wait would not end.
 
 
 # ---- Recordings
