@@ -184,11 +184,12 @@ static void fail_attempt(tmini_t *lidar, int result)
 static void end_frequency(tmini_t *lidar, int result)
 {
     const bool is_wanted = lidar->command.wanted_chz != 0;
+    const bool is_set = result == TMINI_OK;
     tmini_monitor_forget_wish(&lidar->monitor);
-    tmini_recovery_note_frequency(lidar, result == TMINI_OK || !is_wanted);
-    if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY) || (is_wanted && result == TMINI_OK)) {
+    tmini_recovery_note_frequency(lidar, is_set || !is_wanted);
+    if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY) || (is_wanted && is_set)) {
         end_wish(lidar, TMINI_EVENT_FREQUENCY, result);
-    } else if (result != TMINI_OK) {
+    } else if (!is_set) {
         lidar->command_error = (int8_t)result;
     }
 }
@@ -355,15 +356,17 @@ static bool note_scanning(tmini_t *lidar)
  * never set again. */
 static bool is_worth_a_restart(const tmini_t *lidar)
 {
-    const bool is_worth_another = tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar);
-    return !lidar->is_recovery_off && (lidar->monitor.off_times == 1 || is_worth_another);
+    if (lidar->is_recovery_off) {
+        return false;
+    }
+    return lidar->monitor.off_times == 1 ||
+           (tmini_frequency_chz(lidar) == 0 && !tmini_recovery_is_mute(lidar));
 }
 
 static void monitor_packet(tmini_t *lidar)
 {
-    const bool is_unknown = tmini_frequency_chz(lidar) == 0;
     switch (tmini_monitor_packet(&lidar->monitor, &lidar->decoder, lidar->command.wanted_chz,
-                                 is_unknown)) {
+                                 tmini_frequency_chz(lidar))) {
     case TMINI_TURN_WHOLE:
         tmini_recovery_forget(lidar); /* A lost lidar has recovered now. */
         break;

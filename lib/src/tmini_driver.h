@@ -148,9 +148,9 @@ typedef enum {
 
 /* What a packet shows by itself. */
 typedef enum {
-    TMINI_SIGN_SCANS,  /* All is well. */
-    TMINI_SIGN_TURNS,  /* The lidar was lost; it sends ranges, but perhaps no start packets. */
     TMINI_SIGN_STANDS, /* The lidar was lost; its rotor may be blocked (section 8). */
+    TMINI_SIGN_TURNS,  /* The lidar was lost; it sends ranges, but perhaps no start packets. */
+    TMINI_SIGN_SCANS,  /* All is well. */
 } tmini_sign_t;
 
 /* A packet has come. */
@@ -326,9 +326,9 @@ typedef enum {
 } tmini_turn_t;
 
 /* Takes the latest packet. If it ends a revolution, judges that revolution. `wanted_chz` 0: any.
- * `is_unknown`: the lidar has not reported which frequency is set. */
+ * `reported_chz`: the frequency that is set; 0: the lidar has not reported it. */
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                  uint16_t wanted_chz, bool is_unknown);
+                                  uint16_t wanted_chz, uint16_t reported_chz);
 
 /* The wanted frequency has changed, or the lidar has been lost: forgets the fault and the count of
  * turns at a wrong one. */

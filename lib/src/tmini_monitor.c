@@ -67,18 +67,18 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
     monitor->off_times = 0;
 }
 
-/* Counts consecutive revolutions at another frequency than wanted, or while it `is_unknown` which
+/* Counts consecutive revolutions at another frequency than wanted, or while it is unknown which
  * one is set. Their number, divided by the frequency that they report, is the time that this has
  * lasted. After three seconds a wrong frequency is a fault. True when the frequency is to be set
  * again: after these three seconds, then after twice as long each time, or 255 turns. */
 static bool has_become_off(tmini_monitor_t *monitor, uint16_t chz, uint16_t wanted_chz,
-                           bool is_unknown)
+                           uint16_t reported_chz)
 {
     const int32_t faster_chz = (int32_t)chz - wanted_chz;
     const int32_t off_chz = faster_chz < 0 ? -faster_chz : faster_chz;
     const int32_t enough = OFF_SECONDS * (int32_t)chz;
     const bool is_wrong = off_chz * OFF_PART > wanted_chz;
-    if (wanted_chz == 0 || chz == 0 || (!is_wrong && !is_unknown)) {
+    if (wanted_chz == 0 || chz == 0 || (!is_wrong && reported_chz != 0)) {
         end_frequency_fault(monitor);
         return false;
     }
@@ -140,7 +140,7 @@ static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet
 }
 
 static tmini_turn_t end_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                   uint16_t wanted_chz, bool is_unknown)
+                                   uint16_t wanted_chz, uint16_t reported_chz)
 {
     const uint16_t chz = tmini_packet_frequency_chz(&decoder->packet);
     judge_revolution(monitor, decoder);
@@ -148,18 +148,18 @@ static tmini_turn_t end_revolution(tmini_monitor_t *monitor, const tmini_decoder
     if (has_become_still(monitor)) {
         return TMINI_TURN_STILL;
     }
-    if (has_become_off(monitor, chz, wanted_chz, is_unknown)) {
+    if (has_become_off(monitor, chz, wanted_chz, reported_chz)) {
         return TMINI_TURN_OFF;
     }
     return decoder->was_whole ? TMINI_TURN_WHOLE : TMINI_TURN_GOES_ON;
 }
 
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
-                                  uint16_t wanted_chz, bool is_unknown)
+                                  uint16_t wanted_chz, uint16_t reported_chz)
 {
     const tmini_packet_t *const packet = &decoder->packet;
     const tmini_turn_t turn = tmini_packet_is_start(packet)
-                                  ? end_revolution(monitor, decoder, wanted_chz, is_unknown)
+                                  ? end_revolution(monitor, decoder, wanted_chz, reported_chz)
                                   : go_on(monitor, packet);
     if (tmini_packet_has_range(packet)) {
         monitor->ranges = (uint8_t)(monitor->ranges + (monitor->ranges < UINT8_MAX));

@@ -172,8 +172,8 @@ PROOFS = [
     driver("request_frequency", "lib/src/tmini_command.c", "(command->unsent & SYNC_SENT) != 0 ?", "false ?"),
     driver("set_frequency", "lib/src/tmini.c", " || frequency_chz > TMINI_FREQUENCY_MAX_CHZ", ""),
     driver("stop", "lib/src/tmini_command.c", "taken < unsent ? unsent - taken : 0", "unsent - taken"),
-    driver("reboot", "lib/src/tmini.c", "take_question(lidar, TMINI_EVENT_REBOOTED)",
-           "take_question(lidar, TMINI_EVENT_INFO)"),
+    driver("reboot", "lib/src/tmini.c", "take_wish(lidar, TMINI_EVENT_REBOOTED)",
+           "take_wish(lidar, TMINI_EVENT_INFO)"),
     driver("withdraw", "lib/src/tmini.c", "    tmini_recovery_forget_wish(lidar, query);\n    if", "    if"),
     driver("time", "lib/src/tmini.c", "return age_ms < AGE_MAX_MS ? age_ms : AGE_MAX_MS;", "return age_ms;"),
 ]
