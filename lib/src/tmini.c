@@ -262,6 +262,7 @@ static void act(tmini_t *lidar)
 static void begin_stop(tmini_t *lidar)
 {
     const bool is_stopping = tmini_recovery_wishes(lidar, TMINI_EVENT_STOPPED);
+    tmini_recovery_forget_wishes(lidar);
     tmini_recovery_wish(lidar, TMINI_EVENT_STOPPED);
     if (lidar->is_listen_only) {
         tmini_command_end(lidar, TMINI_ERROR_ABORTED);
@@ -601,11 +602,16 @@ static bool has_port(const tmini_config_t *config)
 /* Checks members that are of no module below, or exclude each other. */
 static bool fits_together(const tmini_config_t *config)
 {
-    return (config->frequency_chz == 0 ||
-            (nearest_step(config->frequency_chz) != 0 && !config->listen_only)) &&
-           (config->step != NULL || config->step_data == NULL) &&
+    return (config->step != NULL || config->step_data == NULL) &&
            (unsigned)config->recovery <= TMINI_RECOVERY_OFF &&
            (config->timing == NULL || config->timing->quiet_line_ms < QUIET_LINE_LIMIT_MS);
+}
+
+/* A lidar to which nothing is sent has the frequency that it has. */
+static bool init_frequency(tmini_t *lidar, const tmini_config_t *config)
+{
+    tmini_command_want(lidar, nearest_step(config->frequency_chz));
+    return config->frequency_chz == 0 || (lidar->command.wanted_chz != 0 && !config->listen_only);
 }
 
 /* Scans need points; and what needs scans needs them, too. */
@@ -637,7 +643,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     }
     *lidar = (tmini_t){0}; /* State unknown, no phase, no CT information. */
     if (config == NULL || !has_port(config) || !fits_together(config) ||
-        !init_modules(lidar, config)) {
+        !init_frequency(lidar, config) || !init_modules(lidar, config)) {
         lidar->ring = (tmini_ring_t){0}; /* It refuses bytes. */
         fail(lidar, TMINI_ERROR_ARGUMENT);
         return TMINI_ERROR_ARGUMENT;
@@ -650,7 +656,6 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
         .step_data = config->step_data,
         .spare_points = config->spare_points,
     };
-    tmini_command_want(lidar, nearest_step(config->frequency_chz));
     lidar->is_recovery_off = config->recovery == TMINI_RECOVERY_OFF;
     lidar->is_listen_only = config->listen_only;
     return TMINI_OK;

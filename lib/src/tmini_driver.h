@@ -222,13 +222,19 @@ static inline bool tmini_recovery_wishes(const tmini_t *lidar, tmini_event_t eve
     return (lidar->recovery.wishes & 1u << event) != 0;
 }
 
-/* Adds a wish. To stop replaces all others. */
+/* Adds a wish. */
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event);
 
 /* A wish has been fulfilled, has failed or is withdrawn. */
 static inline void tmini_recovery_forget_wish(tmini_t *lidar, tmini_event_t event)
 {
     lidar->recovery.wishes &= (uint8_t) ~(1u << event);
+}
+
+/* To stop replaces all other wishes. */
+static inline void tmini_recovery_forget_wishes(tmini_t *lidar)
+{
+    lidar->recovery.wishes = 0;
 }
 
 /* The first of these events in their order, or TMINI_EVENT_NONE. */

@@ -19,8 +19,7 @@
 
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
 {
-    const unsigned others = event == TMINI_EVENT_STOPPED ? 0 : lidar->recovery.wishes;
-    lidar->recovery.wishes = (uint8_t)(others | BIT(event));
+    lidar->recovery.wishes |= (uint8_t)BIT(event);
     lidar->recovery.is_lost = false; /* A lost lidar gets no question. */
 }
 
