@@ -7,8 +7,8 @@
 
 enum verdict { NOT_A_FRAME, INCOMPLETE, COMPLETE };
 
-/* The start signs (sections 4 and 5). */
-enum { PACKET_FIRST = 0xAA, PACKET_SECOND = 0x55, REPLY_FIRST = 0xA5, REPLY_SECOND = 0x5A };
+/* The start signs (sections 4 and 5): in both, the second byte is the first one, inverted. */
+enum { PACKET_FIRST = 0xAA, REPLY_FIRST = 0xA5, INVERTED = 0xFF };
 
 /* Offsets in a reply's header after the start sign (section 4); a packet's are in
  * tmini_packet_header.h. */
@@ -49,9 +49,8 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
         sample += BLOCK_SIZE;
     } while (--blocks > 0);
     first ^= second << 8 | second >> 24;
-    const uint32_t low = first ^ first >> 8 ^ first >> 24 ^ third >> 8 ^ third >> 16;
-    const uint32_t high = first >> 16 ^ third ^ third >> 24;
-    return (unsigned)((low & 0xFFu) | (high & 0xFFu) << 8);
+    const uint32_t low = (first ^ first >> 24 ^ third >> 8) & 0xFFu;
+    return (unsigned)((low ^ first >> 8 ^ third << 8 ^ third >> 16) & 0xFFFFu);
 }
 
 /* The same for contiguous samples, most of them by blocks. If the address is `ahead` bytes above a
@@ -82,8 +81,8 @@ typedef char
 static bool checksum_matches(const tmini_frame_t *frame)
 {
     const uint32_t words = tmini_word(frame->header) ^ tmini_word(&frame->header[4]);
-    unsigned sum =
-        (unsigned)((words ^ words >> 16) & 0xFFFFu) ^ (PACKET_FIRST | PACKET_SECOND << 8);
+    unsigned sum = (unsigned)((words ^ words >> 16) & 0xFFFFu) ^
+                   (PACKET_FIRST | (PACKET_FIRST ^ INVERTED) << 8);
     size_t left = frame->header[LSN];
     while (left > 0) {
         const size_t done = frame->header[LSN] - left;
@@ -172,7 +171,7 @@ static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
         parser->need = 2;
         return INCOMPLETE;
     }
-    if (tmini_ring_peek(ring, 1) != (is_packet ? PACKET_SECOND : REPLY_SECOND)) {
+    if ((first ^ tmini_ring_peek(ring, 1)) != INVERTED) {
         return NOT_A_FRAME;
     }
     const uint16_t size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
@@ -287,16 +286,16 @@ static tmini_frame_type_t deliver(tmini_parser_t *parser)
     frame->size = parser->need;
     frame->checksum_errors = (uint16_t)parser->counters.checksum_errors;
     parser->effort = (uint16_t)(parser->effort + frame->size);
-    const bool is_packet = parser->kind == TMINI_FRAME_PACKET;
+    const tmini_frame_type_t type = (tmini_frame_type_t)parser->kind;
     begin_candidate(parser);
-    if (is_packet) {
+    if (type == TMINI_FRAME_PACKET) {
         parser->counters.packets++;
         parser->counters.bytes_in_packets += frame->size;
-        return TMINI_FRAME_PACKET;
+    } else {
+        parser->awaiting = false;
+        parser->counters.bytes_in_replies += frame->size;
     }
-    parser->awaiting = false;
-    parser->counters.bytes_in_replies += frame->size;
-    return TMINI_FRAME_REPLY;
+    return type;
 }
 
 tmini_status_t tmini_parser_init(tmini_parser_t *parser, tmini_ring_t *ring, uint8_t max_samples)
