@@ -123,8 +123,7 @@ TMINI_NOINLINE static void look(tmini_t *lidar)
 static void restart(tmini_t *lidar)
 {
     raise_event(lidar, TMINI_EVENT_PAUSED);
-    tmini_recovery_reset(lidar);
-    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+    tmini_recovery_restart(lidar);
 }
 
 /* The lidar is lost. Another unit may come back, so what is known about this one is forgotten. */
@@ -282,7 +281,6 @@ static tmini_status_t take_wish(tmini_t *lidar, tmini_event_t event)
         if (is_to_scan(lidar)) {
             return TMINI_OK;
         }
-        tmini_recovery_reset(lidar);
     } else if (lidar->is_listen_only) {
         return TMINI_ERROR_LISTEN_ONLY;
     } else if (tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {

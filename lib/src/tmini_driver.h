@@ -222,7 +222,7 @@ static inline bool tmini_recovery_wishes(const tmini_t *lidar, tmini_event_t eve
     return (lidar->recovery.wishes & 1u << event) != 0;
 }
 
-/* Adds a wish. */
+/* Adds a wish. The ladder will begin from its first attempt. */
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event);
 
 /* A wish has been fulfilled, has failed or is withdrawn. */
@@ -247,8 +247,8 @@ bool tmini_recovery_is_step(const tmini_t *lidar, tmini_event_t operation);
  * TMINI_EVENT_NONE. Without one the lidar rests. */
 void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended);
 
-/* The next attempt to scan is the first one of the ladder. */
-void tmini_recovery_reset(tmini_t *lidar);
+/* Begins the ladder from its first attempt. */
+void tmini_recovery_restart(tmini_t *lidar);
 
 /* Begins the ladder for a lidar that has been lost. If it has made no complete revolution since the
  * previous loss, the ladder continues instead. */

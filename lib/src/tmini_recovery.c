@@ -17,10 +17,18 @@
 
 #define BIT(event) (1u << (event))
 
+/* The next attempt to scan is the first one of the ladder. */
+static void reset(tmini_t *lidar)
+{
+    lidar->recovery.attempts = FIRST_ATTEMPT;
+    lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
+}
+
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
 {
     lidar->recovery.wishes |= (uint8_t)BIT(event);
     lidar->recovery.is_lost = false; /* A lost lidar gets no question. */
+    reset(lidar);
 }
 
 /* ----------------------------------------------------------------------------------- the ladder */
@@ -31,12 +39,6 @@ TMINI_NOINLINE void tmini_recovery_restart_reception(const tmini_t *lidar)
     if (port->restart != NULL) {
         port->restart(lidar->link.port_context);
     }
-}
-
-void tmini_recovery_reset(tmini_t *lidar)
-{
-    lidar->recovery.attempts = FIRST_ATTEMPT;
-    lidar->recovery.pause_ms = TMINI_BACK_OFF_MS / 2; /* It doubles before it is used. */
 }
 
 void tmini_recovery_back_off(tmini_t *lidar, int result)
@@ -131,6 +133,12 @@ void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended)
     tmini_command_begin(lidar, operation, attempts);
 }
 
+void tmini_recovery_restart(tmini_t *lidar)
+{
+    reset(lidar);
+    tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+}
+
 void tmini_recovery_begin(tmini_t *lidar)
 {
     tmini_recovery_t *const recovery = &lidar->recovery;
@@ -142,7 +150,6 @@ void tmini_recovery_begin(tmini_t *lidar)
     } else if (recovery->attempts > 0) { /* Lost again before it made a complete revolution. */
         tmini_recovery_back_off(lidar, TMINI_OK);
     } else {
-        tmini_recovery_reset(lidar);
-        tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
+        tmini_recovery_restart(lidar);
     }
 }
