@@ -15,43 +15,43 @@
 //     bench.writeError()                   the next write fails, the port stays open
 //     bench.answers = (code) => …          whether the lidar receives this command
 
-const bench = { choice: 'port', opening: null, line: 'good', opened: [], written: [], answers: () => true };
+const bench = { choice: 'port', opening: null, line: 'good', baudRate: 0, written: [], answers: () => true };
 
 const PORTION = 64; // Bytes per USB packet.
 
 class Device {
-    #exports = null;
+    #library = null;
     #plugged = true;
     #turn = 0;
 
-    async #power() {
-        const text = document.getElementById('library').textContent.trim();
-        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-        this.#exports = (await WebAssembly.instantiate(bytes)).instance.exports;
-        this.#exports.simulation_init(7, 1, 600);
+    // The library is that of the page, which must be there.
+    async ready() {
+        if (this.#library === null) {
+            const text = document.getElementById('library').textContent.trim();
+            const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+            this.#library = (await WebAssembly.instantiate(bytes)).instance.exports;
+            this.#library.simulation_init(7, 1, 600);
+        }
     }
 
     get #now() {
         return Math.floor(performance.now());
     }
 
-    async ready() {
-        if (this.#exports === null) {
-            await this.#power();
-        }
+    #transferred(count) {
+        return new Uint8Array(this.#library.memory.buffer, this.#library.transfer(), count);
     }
 
     setPower(on) {
         this.#plugged = on;
-        this.#exports?.simulation_power(on ? 1 : 0, this.#now);
+        this.#library?.simulation_power(on ? 1 : 0, this.#now);
     }
 
     receive(bytes) {
-        if (!this.#plugged || bench.line === 'deaf' || !bench.answers(bytes[1])) {
-            return;
+        if (this.#plugged && bench.line !== 'deaf' && bench.answers(bytes[1])) {
+            this.#transferred(bytes.length).set(bytes);
+            this.#library.simulation_write(bytes.length, this.#now);
         }
-        new Uint8Array(this.#exports.memory.buffer, this.#exports.transfer(), bytes.length).set(bytes);
-        this.#exports.simulation_write(bytes.length, this.#now);
     }
 
     // The bytes that have come since the last call; bytes that the caller does not take are lost.
@@ -60,21 +60,16 @@ class Device {
         if (bench.line === 'held' || (bench.line === 'late' && this.#turn % 2 === 0)) {
             return new Uint8Array(0);
         }
-        const count = this.#exports.simulation_read(this.#now);
-        const bytes = new Uint8Array(this.#exports.memory.buffer, this.#exports.transfer(), count).slice();
+        const bytes = this.#transferred(this.#library.simulation_read(this.#now)).slice();
         if (bench.line === 'dead') {
             return bytes.subarray(0, 0);
         }
         return bench.line === 'garbled' ? bytes.map((byte) => (byte * 7 + 90) & 0x7F) : bytes;
     }
-
-    // Behaves as a lidar that was left scanning.
-    startByItself() {
-        this.receive(Uint8Array.of(0xA5, 0x60));
-    }
 }
 
-// [[state]], [[readFatal]] … are the specification's internal slots.
+// [[state]], [[readFatal]] … are the specification's internal slots. Whatever is not private here is in the
+// specification: test_sources.py compares it with the browser's own.
 class StandInPort extends EventTarget {
     #state = 'closed';
     #readable = null;
@@ -84,42 +79,27 @@ class StandInPort extends EventTarget {
     #control = null;
     #writeControl = null;
     #timer = 0;
-    #connected = true;
+    #present = true;
     #failsWriting = false;
-    #device;
-
-    constructor(device) {
-        super();
-        this.#device = device;
-    }
-
-    get connected() {
-        return this.#connected;
-    }
+    #device = new Device();
 
     getInfo() {
         return { usbVendorId: 0x10C4, usbProductId: 0xEA60 };
     }
 
-    async open(options) {
-        if (options?.baudRate === undefined) {
-            throw new TypeError('required member baudRate is undefined.');
-        }
+    async open({ baudRate, bufferSize = 255 }) {
         if (this.#state !== 'closed') {
             throw new DOMException('The port is already open.', 'InvalidStateError');
         }
-        if (options.baudRate === 0 || options.bufferSize === 0) {
-            throw new TypeError('A value is 0.');
-        }
         this.#state = 'opening';
         await this.#device.ready();
-        if (bench.opening !== null || !this.#connected) {
+        if (bench.opening !== null || !this.#present) {
             this.#state = 'closed';
             throw new DOMException('Failed to open serial port.', bench.opening ?? 'NetworkError');
         }
-        bench.opened.push({ ...options });
+        bench.baudRate = baudRate;
         this.#state = 'opened';
-        this.#bufferSize = options.bufferSize ?? 255;
+        this.#bufferSize = bufferSize;
         this.#fatal = false;
         this.#timer = setInterval(() => this.#arrive(), 8);
     }
@@ -136,20 +116,21 @@ class StandInPort extends EventTarget {
     }
 
     get writable() {
+        const end = () => { this.#writable = null; };
         if (this.#writable === null && this.#state === 'opened' && !this.#fatal) {
             this.#writable = new WritableStream({
                 start: (control) => { this.#writeControl = control; },
                 write: (bytes) => {
                     if (this.#failsWriting) {
                         this.#failsWriting = false;
-                        this.#writable = null;
+                        end();
                         throw new DOMException('Writing failed.', 'UnknownError');
                     }
                     bench.written.push(...bytes);
                     this.#device.receive(bytes);
                 },
-                abort: () => { this.#writable = null; },
-                close: () => { this.#writable = null; },
+                abort: end,
+                close: end,
             });
         }
         return this.#writable;
@@ -169,8 +150,6 @@ class StandInPort extends EventTarget {
             throw error;
         }
         clearInterval(this.#timer);
-        this.#readable = null;
-        this.#writable = null;
         this.#state = 'closed';
     }
 
@@ -181,7 +160,7 @@ class StandInPort extends EventTarget {
             return;
         }
         if (this.#control.desiredSize < bytes.length) {
-            this.failStream('BufferOverrunError');
+            this.#failStream('BufferOverrunError');
             return;
         }
         for (let from = 0; from < bytes.length; from += PORTION) {
@@ -190,59 +169,52 @@ class StandInPort extends EventTarget {
     }
 
     // The stream ends with an error, the port stays open.
-    failStream(name) {
+    #failStream(name) {
         this.#control.error(new DOMException(`The line failed: ${name}.`, name));
         this.#readable = null;
     }
 
-    failWriting() {
-        this.#failsWriting = true;
-    }
-
-    lose() {
-        const lost = () => new DOMException('The device has been lost.', 'NetworkError');
-        this.#connected = false;
+    #lose() {
         clearInterval(this.#timer);
         if (this.#state === 'opened') {
+            const lost = new DOMException('The device has been lost.', 'NetworkError');
             this.#fatal = true;
-            if (this.#readable !== null) {
-                this.#control.error(lost());
-                this.#readable = null;
-            }
-            if (this.#writable !== null) {
-                this.#writeControl.error(lost());
-                this.#writable = null;
-            }
+            this.#control?.error(lost);
+            this.#writeControl?.error(lost);
+            this.#readable = null;
+            this.#writable = null;
         }
-        this.#dispatch('disconnect');
     }
 
-    find() {
-        this.#connected = true;
-        this.#dispatch('connect');
+    #setPower(on) {
+        this.#present = on;
+        this.#device.setPower(on);
+        if (!on) {
+            this.#lose();
+        }
+        // At the port, and at navigator.serial as if it had bubbled.
+        const event = new Event(on ? 'connect' : 'disconnect');
+        this.dispatchEvent(event);
+        const bubbled = new Event(event.type);
+        Object.defineProperty(bubbled, 'target', { value: this });
+        navigator.serial.dispatchEvent(bubbled);
     }
 
-    // Dispatches an event at the port, and at navigator.serial as if it had bubbled.
-    #dispatch(type) {
-        this.dispatchEvent(new Event(type));
-        const event = new Event(type);
-        Object.defineProperty(event, 'target', { value: this });
-        navigator.serial.dispatchEvent(event);
+    static {
+        const port = new StandInPort();
+        bench.port = port;
+        bench.plug = () => port.#setPower(true);
+        bench.unplug = () => port.#setPower(false);
+        bench.lineError = (name) => port.#failStream(name);
+        bench.writeError = () => { port.#failsWriting = true; };
+        bench.leaveScanning = async () => { // As another program may have left it.
+            await port.#device.ready();
+            port.#device.receive(Uint8Array.of(0xA5, 0x60));
+        };
     }
 }
 
 class StandInSerial extends EventTarget {
-    #port;
-
-    constructor(port) {
-        super();
-        this.#port = port;
-    }
-
-    async getPorts() {
-        return this.#port.connected ? [this.#port] : [];
-    }
-
     async requestPort() {
         if (!navigator.userActivation.isActive) {
             throw new DOMException('Must be handling a user gesture to show a permission request.', 'SecurityError');
@@ -250,28 +222,9 @@ class StandInSerial extends EventTarget {
         if (bench.choice === 'none') {
             throw new DOMException('No port selected by the user.', 'NotFoundError');
         }
-        return this.#port;
+        return bench.port;
     }
 }
 
-{
-    const device = new Device();
-    const port = new StandInPort(device);
-    bench.unplug = () => {
-        device.setPower(false);
-        port.lose();
-    };
-    bench.plug = () => {
-        device.setPower(true);
-        port.find();
-    };
-    bench.lineError = (name) => port.failStream(name);
-    bench.writeError = () => port.failWriting();
-    bench.leaveScanning = async () => {
-        await device.ready();
-        device.startByItself();
-    };
-    bench.port = port;
-    window.bench = bench;
-    Object.defineProperty(navigator, 'serial', { value: new StandInSerial(port), configurable: true });
-}
+window.bench = bench;
+Object.defineProperty(navigator, 'serial', { value: new StandInSerial(), configurable: true });

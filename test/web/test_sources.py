@@ -126,11 +126,16 @@ class TestSerial:
     def settings(self):
         return {"before": STAND_IN}
 
+    def test_the_stand_in_has_only_what_web_serial_has(self, page):
+        assert page.run("""return [[bench.port, SerialPort], [navigator.serial, Serial]].flatMap(([standIn, real]) =>
+            Object.getOwnPropertyNames(Object.getPrototypeOf(standIn)).filter((name) => !(name in real.prototype))
+            )""") == []
+
     def test_a_lidar_is_connected_scans_is_unplugged_and_comes_back(self, page):
         page.play("connect; state: scanning; source: USB adapter 10c4:ea60; 2 scans; serial-number = 2026031700012345; "
                   "bench.unplug(); problem: The adapter has gone; state: unplugged; bench.plug(); state: scanning; "
                   "not problem; 2 scans; disconnect; state: not connected")
-        assert page.run("return [bench.opened[0].baudRate, bench.port.readable, ...bench.written.slice(-2)]") == [
+        assert page.run("return [bench.baudRate, bench.port.readable, ...bench.written.slice(-2)]") == [
             230400, None, 0xA5, 0x65]
         page.play("connect; state: scanning")
 
