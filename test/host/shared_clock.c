@@ -55,8 +55,7 @@ typedef struct {
 
 static clock_file_t *shared;
 static int lock_fd;
-static int
-    wake_fd; /* Others wake this program by SIGURG, which does not disturb any other program. */
+static int wake_fd; /* Others wake this program by SIGURG, which does no harm elsewhere. */
 
 /* The real time in which nothing happens after which poll() gives up with ETIME; 0: never. It also
  * gives up after LONGEST_NS of the clock's time. For the test itself. */
