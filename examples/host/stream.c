@@ -59,10 +59,8 @@ static void count_gap(stream_t *stream, const tmini_packet_t *packet)
 
 static void count(stream_t *stream, const tmini_packet_t *packet, uint32_t now_ms)
 {
-    const uint32_t pause_ms = stream->packets > 0 ? now_ms - stream->packet_ms : 0;
     count_gap(stream, packet);
     stream->is_broken = false;
-    stream->longest_ms = pause_ms > stream->longest_ms ? pause_ms : stream->longest_ms;
     stream->packet_ms = now_ms;
     stream->packets++;
     stream->points += packet->count;

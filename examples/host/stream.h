@@ -31,7 +31,6 @@ typedef struct {
     count_t confirmed;          /* Revolutions that LastCRC confirmed. */
     uint32_t packet_ms;         /* When the latest packet came. */
     uint32_t sent_ms;           /* The same, as the scan builder was told: see `is_late`. */
-    uint32_t longest_ms;        /* The longest pause between two packets. */
     unsigned frequency_chz;     /* As reported last; 0: not yet. */
     bool has_scan;              /* The latest packet has completed `scan`. */
     bool is_broken;             /* The next packet does not follow the latest one. */

@@ -4,8 +4,11 @@
 """`tmini decode` prints what a plain reading of the protocol finds in intact and in damaged recordings. Also: how the
 tool takes options, and what it says when there is nothing to decode."""
 
+import concurrent.futures
 import json
 import os
+import random
+import re
 import resource
 import signal
 import subprocess
@@ -123,6 +126,90 @@ def test_a_dash_is_standard_output_for_the_counters(tmini, folder):
     assert '\n{"packets":3,"start_packets":2,' in tmini("decode", "one.bin", "--stats", "-").out
 
 
+# A turn's packets, and a turn: the start packet (6 Hz), and four quarters of 40 points each.
+QUARTERS = [START, *(packet([(0, quarter, 0), *39 * [(0, 0, 0)]], (quarter - 1) * 5760 + 144, quarter * 5760 % 23040)
+                     for quarter in (1, 2, 3, 4))]
+TURN = b"".join(QUARTERS)
+S, Q = QUARTERS[:2]
+
+
+def played(*told):
+    """A timed recording of turns (TURN) and of packets by their numbers, one every 42 ms; "+MS": more time passes."""
+    chunks, after_us = [], 0
+    for one in told:
+        if isinstance(one, str):
+            after_us += int(one) * 1000 - 42000
+            continue
+        for content in QUARTERS if one == TURN else [QUARTERS[one]]:
+            chunks.append((after_us + 42000, content))
+            after_us = 0
+    return timed(*chunks)
+
+
+# What is recorded; the scans: number, whether it is complete, points, packets; and what the summary says of the rest.
+STREAMS = {
+    "what precedes the first packet is no damage": (
+        bytes(300) + Q, [], [" 0 stray bytes between packets\n", " 300 bytes before the first packet"]),
+    "one byte before a start packet is LastCRC": (
+        TURN + bytes(1) + TURN, [(1, True, 161, 5), (2, False, 161, 5)], [" 0 stray bytes", " 1 LastCRC bytes,"]),
+    "two bytes before a start packet are damage": (
+        TURN + bytes(2) + TURN, [(1, False, 161, 5), (2, False, 161, 5)], [" 2 stray bytes", " 0 LastCRC bytes,"]),
+    "a pause may be longer than a minute": (
+        played("+0", TURN, "+66000", TURN), [(1, False, 161, 5), (2, False, 161, 5)], [" in 66.336 s: "]),
+    "the time before the first packet is no pause": (
+        played("+66000", TURN, "+70", TURN), [(1, True, 161, 5), (2, False, 161, 5)], []),
+    "before a whole turn it is unknown what a unit reports": (
+        TURN, [(1, False, 161, 5)], ["health      unknown"]),
+    "a unit may report nothing in the stream": (
+        TURN + S, [(1, True, 161, 5), (2, False, 1, 1)], ["health      not reported"]),
+    "after LastCRC a report may follow": (
+        TURN + TURN + bytes(1) + S, [(1, True, 161, 5), (2, True, 161, 5), (3, False, 1, 1)],
+        [" 1 LastCRC bytes,", "health      unknown"]),
+    "points before the first start packet are of no scan": (
+        QUARTERS[4] + TURN + S, [(1, True, 161, 5), (2, False, 1, 1)], ["; 40 before the first start packet"]),
+    "a start packet and then a pause is no scan": (
+        played(TURN, 0, "+1001", TURN, TURN), [(1, True, 161, 5), (3, True, 161, 5), (4, False, 161, 5)], []),
+    "a start packet is not joined with what comes after a pause": (played(0, "+1001", 1), [(1, False, 40, 1)], []),
+    "a scan goes on after a second": (played(0, 1, "+1000", 2), [(1, False, 81, 3)], []),
+    # The angles fit together, but whole turns may be missing in the pause.
+    "a scan does not go on after a longer pause": (
+        played(0, 1, "+1001", 2), [(1, False, 41, 2), (1, False, 40, 1)], []),
+    # The packets before and after them must not be joined; how many are lost is unknown.
+    "a scan does not go on after unreadable bytes": (
+        bytes(70000).join([S + Q, QUARTERS[2], QUARTERS[3]]), [(1, False, 41, 2), (1, False, 40, 1)], [": 4 packets,"]),
+}
+
+
+@pytest.mark.parametrize("content, scans, said", STREAMS.values(), ids=[name.replace(" ", "_") for name in STREAMS])
+def test_a_stream(tmini, folder, content, scans, said):
+    (folder / "some").write_bytes(content)
+    found = [json.loads(line) for line in tmini("decode", "some", "--json", "-q").out.splitlines()]
+    assert [(scan["scan"], scan["complete"], len(scan["points"]), scan["packets"]) for scan in found] == scans
+    summary = tmini("decode", "some").out
+    assert [words for words in said if words not in summary] == []
+
+
+# Computed backwards from the packets, the first sample would be before it.
+def test_no_scan_begins_before_the_recording(tmini, folder):
+    (folder / "some").write_bytes(S + bytes(600) + QUARTERS[1] + QUARTERS[2])
+    scans = [json.loads(line) for line in tmini("decode", "some", "--json", "-q").out.splitlines()]
+    assert (scans[-1]["packets"], scans[-1]["time_ms"]) == (2, 0)
+
+
+# Each read of such a pipe returns what one write has written.
+@pytest.mark.parametrize("block", [3 ** power for power in range(9)])
+@pytest.mark.parametrize("content", [30 * TURN, played(*30 * [TURN])], ids=["raw", "timed"])
+def test_blocks_of_any_size_give_the_same(tmini, folder, content, block):
+    (folder / "whole").write_bytes(content)
+    output, entry = os.pipe2(os.O_DIRECT)
+    with os.fdopen(output) as stdin, concurrent.futures.ThreadPoolExecutor() as writer:
+        blocks = [content[at:at + block] for at in range(0, len(content), block)]
+        writer.submit(lambda: ([os.write(entry, one) for one in blocks], os.close(entry)))
+        run = tmini("decode", "-", stdin=stdin)
+    assert run.out == tmini("decode", "whole").out
+    assert "29 complete" in run.out and ": 150 packets," in run.out
+
+
 # ---- Summary
 
 
@@ -202,6 +289,42 @@ def test_a_timed_recording_that_ends_anywhere_is_not_damaged(tmini, folder, vers
         packets, counts = decode(there)
         assert (run.status, "damaged" in run.err) == (0 if packets else 1, False)
         assert json.loads(Path("stats.json").read_text(encoding="ascii")) == counts
+
+
+# While the next chunk is looked for, the lidar's bytes are passed on, down to the last.
+def test_a_recording_may_end_in_a_damaged_place(tmini, folder):
+    (folder / "timed.tmini").write_bytes(timed(version=1) + bytes(4) + Q)
+    run = tmini("decode", "timed.tmini")
+    assert "damaged in 1 place" in run.err
+    assert "134 bytes in " in run.out and ": 1 packets," in run.out
+
+
+# Version 1 cannot detect a changed pause.
+@pytest.mark.parametrize("version", (1, 2))
+def test_a_damaged_byte_is_noticed_and_costs_a_recording_a_hundredth_at_most(tmini, folder, version):
+    sent = subprocess.run([TMINI_SIM, "--write", "-", "--seconds", "10"], capture_output=True, check=True).stdout
+    draw, chunks = random.Random(version), []
+    while sent:
+        size = draw.randint(40, 90)
+        chunks.append((size * 76, sent[:size]))  # The lidar sends a byte every 76 us.
+        sent = sent[size:]
+    content = timed(*chunks, version=version)
+
+    def decoded(content):
+        Path("some").write_bytes(content)
+        run = subprocess.run([TMINI, "decode", "some", "--stats", "stats"], capture_output=True, text=True, check=True)
+        seconds = float(re.search(r" bytes in ([\d.]+) s:", run.stdout)[1])
+        return json.loads(Path("stats").read_text(encoding="ascii"))["packets"], seconds, "damaged in" in run.stderr
+
+    packets, seconds, is_damaged = decoded(content)
+    assert packets > 900 and not is_damaged
+    for at in range(150, len(content), 1531):
+        other = bytes([content[at] ^ 0x55])
+        for damage in (b"", other, other + content[at:at + 1]):  # A byte is lost, changed, added.
+            left, lasting, is_noticed = decoded(content[:at] + damage + content[at + 1:])
+            assert packets * 99 <= left * 100 <= packets * 100, (at, damage)
+            if version == 2:
+                assert abs(lasting - seconds) <= 0.02 and (is_noticed or at + 600 > len(content)), (at, damage)
 
 
 # ---- Nothing to decode, nowhere to print
