@@ -180,7 +180,7 @@ static void fail_attempt(tmini_t *lidar, int result)
 }
 
 /* The event is not raised if no frequency is wanted and nobody has asked. */
-static void end_frequency(tmini_t *lidar, int result)
+TMINI_NOINLINE static void end_frequency(tmini_t *lidar, int result)
 {
     const bool is_wanted = lidar->command.wanted_chz != 0;
     const bool is_set = result == TMINI_OK;
@@ -433,9 +433,8 @@ static void end_scan(tmini_t *lidar, bool is_doubtful)
 static void take_packet(tmini_t *lidar)
 {
     const uint32_t came_ms = arrival_ms(lidar);
-    const bool scans = note_scanning(lidar);
     const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
-    if (!scans) {
+    if (!note_scanning(lidar)) {
         return; /* A packet of the tail after a stop, or of a lidar that is not to scan. */
     }
     expect_packet(lidar);
