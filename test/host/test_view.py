@@ -183,6 +183,17 @@ def test_a_recording_can_be_paused_stepped_through_and_played_again(see):
     view.wait_for("end of the recording")
 
 
+def test_an_arrow_goes_five_seconds(see, folder):
+    ends_ms = (0, 1000, 1001, 5999, 6000, 6001)  # Scan 1 ends at 1000 ms.
+    pauses_ms = (after - before for before, after in zip((0, *ends_ms), ends_ms))
+    (folder / "slow.tmini").write_bytes(timed(*((1000 * pause, CROSS[:-13]) for pause in pauses_ms)))
+    view = see("slow.tmini")
+    for key, shown in ((",", "scan 4 "), (",", "scan 3 "), (",", "scan 2 "), (",", "scan 1 "), (">", "scan 4 "),
+                       ("<", "scan 1 ")):
+        view.press(key)
+        view.wait_for(shown)
+
+
 # The cross, whose scan ends two seconds after its beginning.
 def test_a_timed_recording_is_played_at_its_own_pace(terminal, folder, clock):
     (folder / "slow.tmini").write_bytes(timed((0, CROSS[:13]), (2000000, CROSS[13:])))
