@@ -12,7 +12,11 @@ enum { PACKET_FIRST = 0xAA, REPLY_FIRST = 0xA5, INVERTED = 0xFF };
 
 /* Offsets in a reply's header after the start sign (section 4); a packet's are in
  * tmini_packet_header.h. */
-enum { REPLY_LENGTH = 0, REPLY_MODE_AND_LENGTH = 3, REPLY_TYPE = 4 };
+enum { REPLY_LENGTH = 0, REPLY_TYPE = 4 };
+
+/* A reply's length has 30 bits, its mode the other two of a word (section 4). */
+#define LENGTH_BITS 30
+#define LENGTH_MASK (((uint32_t)1 << LENGTH_BITS) - 1)
 
 /* The checksum is computed by words of four bytes. A sample has three bytes, so four samples are
  * three words. */
@@ -105,19 +109,17 @@ static bool packet_header_is_plausible(const tmini_parser_t *parser)
     return check_bits && header[LSN] >= 1 && header[LSN] <= (is_start ? 1 : parser->max_samples);
 }
 
-/* Only the lowest byte of the length can be other than 0, because no reply is longer than 20 bytes.
- * A continuous reply's length has no meaning. */
+/* A continuous reply's length has no meaning. */
 static bool reply_header_is_awaited(const tmini_parser_t *parser)
 {
     const uint8_t *const header = parser->frame.header;
     const tmini_reply_header_t *const awaited = &parser->awaited;
-    const uint8_t mode_and_length = header[REPLY_MODE_AND_LENGTH];
-    if (header[REPLY_TYPE] != awaited->type || mode_and_length >> 6 != awaited->mode) {
+    const uint32_t length_and_mode = tmini_word(&header[REPLY_LENGTH]);
+    if (header[REPLY_TYPE] != awaited->type || length_and_mode >> LENGTH_BITS != awaited->mode) {
         return false;
     }
     return awaited->mode == TMINI_REPLY_MODE_CONTINUOUS ||
-           (header[REPLY_LENGTH] == awaited->length &&
-            (header[REPLY_LENGTH + 1] | header[REPLY_LENGTH + 2] | mode_and_length) == 0);
+           (length_and_mode & LENGTH_MASK) == awaited->length;
 }
 
 /* True if neither a packet nor the awaited reply can begin with this byte. */
