@@ -31,9 +31,8 @@ enum {
 /* Fields that have not come keep their values. */
 static void trust_current(tmini_ct_t *ct)
 {
-    while (ct->fields > 0) {
-        ct->fields--;
-        ct->trusted[ct->fields] = ct->current[ct->fields];
+    for (unsigned i = 0; i < ct->fields; i++) {
+        ct->trusted[i] = ct->current[i];
     }
     ct->known |= ((1u << ct->packets) - 1) & KNOWN_MASK;
 }

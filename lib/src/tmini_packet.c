@@ -145,12 +145,13 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_frame_t *const frame = packet->frame;
-    for (size_t i = 0; i < packet->count; i++) {
-        const size_t sample = TMINI_SAMPLE_OFFSET(i);
+    size_t sample = TMINI_SAMPLE_OFFSET(0);
+    for (unsigned left = packet->count; left > 0; left--) {
         if (tmini_frame_peek(frame, sample + 1) > FLAG_MASK ||
             tmini_frame_peek(frame, sample + 2) > 0) {
             return true;
         }
+        sample += TMINI_SAMPLE_SIZE;
     }
     return false;
 }
