@@ -10,8 +10,6 @@ BUILD is the folder of a complete build. Exit status: 0 no mistake, 1 mistakes. 
 block that could not be checked with the reason.
 """
 
-import configparser
-import json
 import os
 import re
 import shutil
@@ -242,19 +240,6 @@ def check_sh(block, _place):
             raise Failed(f"nothing of this project knows {option}")
 
 
-def check_ini(block, _place):
-    parser = configparser.ConfigParser()
-    parser.read_string("[env]\n" + block.text)
-    for key in parser["env"]:
-        if not re.fullmatch(r"\w+", key):
-            raise Failed(f"no option: {key}")
-
-
-def check_json(block, _place):
-    for line in block.text.splitlines():
-        json.loads(line)
-
-
 def check_yaml(block, _place):
     # Python's standard library has no YAML parser, but Ruby's has one.
     run(need("ruby"), "-ryaml", "-e", "YAML.load($stdin.read)", input=block.text)
@@ -292,9 +277,8 @@ def check_python(block, _place):
     compile(block.text, str(block), "exec")
 
 
-CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "ini": check_ini,
-          "json": check_json, "yaml": check_yaml, "conf": check_conf, "dts": check_dts,
-          "ld": check_ld, "python": check_python}
+CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "yaml": check_yaml,
+          "conf": check_conf, "dts": check_dts, "ld": check_ld, "python": check_python}
 
 
 class Place:
@@ -316,9 +300,7 @@ def check(block, place):
         return f"{block}: no check for the language \"{block.language}\"", None
     try:
         CHECKS[block.language](block, place)
-    except Failed as failure:
-        return f"{block}: {failure}", None
-    except (configparser.Error, json.JSONDecodeError, SyntaxError) as failure:
+    except (Failed, SyntaxError) as failure:
         return f"{block}: {failure}", None
     except Missing as reason:
         return None, str(reason)
