@@ -48,7 +48,8 @@ def text_of(path):
 
 
 def known_words():
-    return [line for line in WORDS.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    lines = WORDS.read_text(encoding="utf-8").splitlines()
+    return [word for line in lines if not line.startswith("#") for word in line.split()]
 
 
 def misspelt(lines):
