@@ -302,10 +302,6 @@ static int on_no_packet(tmini_t *lidar)
 static int on_time_out(tmini_t *lidar)
 {
     switch (lidar->command.phase) {
-    case TMINI_PHASE_NONE: /* From now on packets mean unwanted scanning. */
-        lidar->command.phase = TMINI_PHASE_WATCHING;
-        lidar->command.timeout_ms = 0;
-        return TMINI_UNDER_WAY;
     case TMINI_PHASE_ASKING:
         return ask_again(lidar);
     case TMINI_PHASE_AWAITING:
@@ -476,13 +472,12 @@ void tmini_command_end(tmini_t *lidar, int result)
         result != TMINI_ERROR_REPLY) { /* That is an answer: it has refused a step. */
         tmini_command_forget_frequency(lidar);
     }
-    if (result != TMINI_OK) { /* Packets are ignored; after a stop only for this time. */
-        const bool was_stopped = command->operation >= TMINI_EVENT_STOPPED;
-        enter(lidar, TMINI_PHASE_NONE, was_stopped ? TMINI_BACK_OFF_MS : 0);
-        return;
+    tmini_phase_t phase = TMINI_PHASE_WATCHING;
+    if (command->operation < TMINI_EVENT_STOPPED) { /* The lidar may be scanning. */
+        phase = TMINI_PHASE_NONE;
+    } else if (result == TMINI_OK && !command->is_repeated &&
+               tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser)) {
+        phase = TMINI_PHASE_IDLE;
     }
-    const bool is_idle =
-        !command->is_repeated && command->phase != TMINI_PHASE_PAUSING &&
-        tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser);
-    enter(lidar, is_idle ? TMINI_PHASE_IDLE : TMINI_PHASE_WATCHING, 0);
+    enter(lidar, phase, 0);
 }

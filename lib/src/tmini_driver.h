@@ -81,8 +81,7 @@ bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 /* What happens on the wire. docs/phases.svg draws them; tmini_command.c has a function for each way
  * in which they end. */
 typedef enum {
-    TMINI_PHASE_NONE,        /* No command is in progress, and the lidar may be scanning. After a
-                              * failed stop or query, TMINI_PHASE_WATCHING follows. */
+    TMINI_PHASE_NONE,        /* No command is in progress, and the lidar may be scanning. */
     TMINI_PHASE_WATCHING,    /* No command, and the lidar should be idle: if it scans, it is
                               * stopped. */
     TMINI_PHASE_IDLE,        /* The same, and the line is known to be quiet. */

@@ -310,8 +310,7 @@ static bool command_is_sound(const tmini_command_t *command)
     const unsigned bytes = command->unsent & TMINI_UNSENT_BYTES;
     return is_operation(command->operation) && unsent_is_sound(command->unsent) &&
            (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
-           (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE ||
-            (command->phase == TMINI_PHASE_NONE && command->timeout_ms == TMINI_BACK_OFF_MS)) &&
+           (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
            command->steps <= STEPS_MAX && command->asks <= asks_max(command->phase) &&
            command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }

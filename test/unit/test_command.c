@@ -80,7 +80,7 @@ static const row_t tales[] IN_FLASH = {
         "idle health >92 <health !HEALTH +500 <P !UNWANTED >65 / idle reboot >40 +1000 >0D <600 "
         "!REBOOTED +500 <P !UNWANTED >65"),
     ROW(a_port_that_cannot_send_the_stop_is_asked_twice_a_second,
-        "idle takes:-1 1000( +10 <P drain ) events:39"), /* Two events each time, one STOPPED. */
+        "idle takes:-1 1000( +10 <P drain ) events:41"), /* Two events each time, one STOPPED. */
     ROW(packets_soon_after_a_stop_may_have_been_held_by_a_layer_below,
         "idle ~499 <P @IDLE !NONE @UNKNOWN"),
     ROW(a_byte_from_an_idle_lidar_makes_its_state_unknown,

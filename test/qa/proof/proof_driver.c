@@ -77,8 +77,7 @@ static bool wish_fits(void)
     const uint8_t phase = lidar.command.phase;
     return (!lidar.is_listen_only ||
             (lidar.command.unsent == 0 &&
-             (phase >= TMINI_PHASE_LISTENING ||
-              (phase == TMINI_PHASE_NONE && lidar.command.timeout_ms == 0)))) &&
+             (phase >= TMINI_PHASE_LISTENING || phase == TMINI_PHASE_NONE))) &&
            (lidar.command.wanted_chz != 0 || (lidar.monitor.faults & TMINI_FAULT_FREQUENCY) == 0);
 }
 
