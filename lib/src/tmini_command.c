@@ -124,7 +124,7 @@ static int quiesce(tmini_t *lidar)
                           quiet_timeout_ms(lidar));
 }
 
-static int ask(tmini_t *lidar)
+TMINI_NOINLINE static int ask(tmini_t *lidar)
 {
     lidar->command.asks++;
     return send_and_await(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);
@@ -132,16 +132,22 @@ static int ask(tmini_t *lidar)
 
 /* --------------------------------------------------------------------------- how commands end */
 
-/* An attempt has failed with `error`: makes another, unless this was the last. */
+/* An attempt has failed with `error`: makes another, unless this was the last. Without an answer to
+ * a step, or with one that may be a late copy, it is unknown whether the lidar obeyed, refused, or
+ * lost its power: asks from the beginning. */
 static int try_again(tmini_t *lidar, int error)
 {
     tmini_command_t *const command = &lidar->command;
     command->timeouts++;
+    command->is_repeated = true;
+    if (command->operation == TMINI_EVENT_FREQUENCY && !tmini_command_awaits_quiet(lidar)) {
+        command->asks = (uint8_t)(command->asks + ASKS_PER_STEP);
+        return command->asks < ASKS_MAX ? ask(lidar) : error;
+    }
     if (command->attempts_left == 0) {
         return error;
     }
     command->attempts_left--;
-    command->is_repeated = true;
     return quiesce(lidar);
 }
 
@@ -269,20 +275,6 @@ static int on_quiet(tmini_t *lidar)
     }
 }
 
-/* Without an answer to a step, or with one that may be a late copy, it is unknown whether the lidar
- * obeyed, refused, or lost its power: asks from the beginning. */
-static int on_no_reply(tmini_t *lidar, int error)
-{
-    tmini_command_t *const command = &lidar->command;
-    if (command->operation != TMINI_EVENT_FREQUENCY) {
-        return try_again(lidar, error);
-    }
-    command->timeouts++;
-    command->is_repeated = true;
-    command->asks = (uint8_t)(command->asks + ASKS_PER_STEP);
-    return command->asks < ASKS_MAX ? ask(lidar) : error;
-}
-
 /* No packet has come in time. If the program has paused, and not just slept until now, the lidar
  * gets another chance: DMA may have overwritten all packets, or the clock may have jumped. */
 static int on_no_packet(tmini_t *lidar)
@@ -303,15 +295,12 @@ static int on_time_out(tmini_t *lidar)
 {
     switch (lidar->command.phase) {
     case TMINI_PHASE_ASKING:
+    case TMINI_PHASE_REBOOTING:
         return ask_again(lidar);
-    case TMINI_PHASE_AWAITING:
-        return on_no_reply(lidar, TMINI_ERROR_TIMEOUT);
     case TMINI_PHASE_UNCHANGED:
-        return on_no_reply(lidar, TMINI_ERROR_REPLY);
+        return try_again(lidar, TMINI_ERROR_REPLY);
     case TMINI_PHASE_STANDING: /* A blocked rotor is a fault; no attempt to start it helps. */
         return TMINI_SCANS;
-    case TMINI_PHASE_REBOOTING:
-        return ask(lidar);
     case TMINI_PHASE_PAUSING:
         return TMINI_OK;
     case TMINI_PHASE_SCANNING:
@@ -319,7 +308,7 @@ static int on_time_out(tmini_t *lidar)
         return on_no_packet(lidar);
     case TMINI_PHASE_LISTENING:
         return TMINI_ERROR_TIMEOUT;
-    default: /* The line did not become quiet, or no start packet came. */
+    default: /* No reply came, no start packet, or the line did not become quiet. */
         return try_again(lidar, TMINI_ERROR_TIMEOUT);
     }
 }
