@@ -50,9 +50,9 @@ static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
 
 /* ------------------------------------------------------------------------------------- sending */
 
-/* Bits of tmini_command_t.unsent beside TMINI_UNSENT_BYTES. */
+/* Bits of tmini_command_t.unsent beside TMINI_UNSENT. */
+#define SYNC_SENT 1u   /* The first byte of a command has been sent, the second has not. */
 #define NOT_OFFERED 4u /* The port has not been asked yet. */
-#define SYNC_SENT 8u   /* The first byte of a command has been sent, the second has not. */
 
 /* send_rest() sends the bytes. If the first byte of an abandoned command has already been sent, it
  * is not sent again: it is the same in all commands. */
@@ -60,43 +60,33 @@ static void send(tmini_t *lidar, tmini_command_code_t code)
 {
     tmini_command_t *const command = &lidar->command;
     command->code = (uint8_t)code;
-    command->unsent = (uint8_t)((command->unsent & SYNC_SENT) != 0 ? SYNC_SENT | NOT_OFFERED | 1u
-                                                                   : NOT_OFFERED | 2u);
+    command->unsent |= TMINI_UNSENT | NOT_OFFERED;
 }
 
-/* Hands what is left of the command to the port. Returns false if the port reports a failure. */
-static bool transmit(tmini_t *lidar)
-{
-    tmini_command_t *const command = &lidar->command;
-    const uint8_t bytes[2] = {TMINI_COMMAND_SYNC, command->code};
-    const int unsent = (int)(command->unsent & TMINI_UNSENT_BYTES);
-    const int taken =
-        lidar->link.port->write(lidar->link.port_context, &bytes[2 - unsent], (size_t)unsent);
-    if (taken < 0) {
-        return false;
-    }
-    /* If a port reports more bytes than it was given, it has taken all. */
-    const int left = taken < unsent ? unsent - taken : 0;
-    command->unsent = (uint8_t)(left == 1 ? SYNC_SENT | 1u : (unsigned)left);
-    return true;
-}
-
-/* Sends the command's bytes. The time to take them begins when the port is asked first, the time of
- * the phase when all have been taken. */
+/* Hands what is left of the command to the port. The time to take it begins when the port is asked
+ * first, the time of the phase when all has been taken. */
 static int send_rest(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
+    const uint8_t bytes[2] = {TMINI_COMMAND_SYNC, command->code};
+    const unsigned before = command->unsent & SYNC_SENT;
     if ((command->unsent & NOT_OFFERED) != 0) {
         command->since_ms = lidar->line.now_ms;
     }
-    if (!transmit(lidar) || (tmini_command_is_sending(lidar) &&
-                             tmini_has_elapsed(lidar, command->since_ms, TMINI_WRITE_TIMEOUT_MS))) {
+    const int taken =
+        lidar->link.port->write(lidar->link.port_context, &bytes[before], sizeof bytes - before);
+    if (taken < 0) {
         return TMINI_ERROR_WRITE;
     }
-    if (!tmini_command_is_sending(lidar)) {
+    const unsigned sent = before + (unsigned)taken;
+    if (sent >= sizeof bytes) { /* More than were offered means all. */
+        command->unsent = 0;
         command->since_ms = lidar->line.now_ms;
+        return TMINI_UNDER_WAY;
     }
-    return TMINI_UNDER_WAY;
+    command->unsent = (uint8_t)(TMINI_UNSENT | sent);
+    return tmini_has_elapsed(lidar, command->since_ms, TMINI_WRITE_TIMEOUT_MS) ? TMINI_ERROR_WRITE
+                                                                               : TMINI_UNDER_WAY;
 }
 
 /* Sends a command (the line is quiet, or it is a stop) and awaits its reply, if it has one, in

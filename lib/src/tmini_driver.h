@@ -104,13 +104,13 @@ typedef enum {
 #define TMINI_UNDER_WAY 1 /* It has not ended. */
 #define TMINI_SCANS 2     /* The lidar scans: packets come. */
 
-/* The bits of tmini_command_t.unsent that count bytes. */
-#define TMINI_UNSENT_BYTES 3u
+/* The bit of tmini_command_t.unsent of a command that the port has not taken completely. */
+#define TMINI_UNSENT 2u
 
 /* True if the port has not taken the whole command yet. */
 static inline bool tmini_command_is_sending(const tmini_t *lidar)
 {
-    return (lidar->command.unsent & TMINI_UNSENT_BYTES) != 0;
+    return (lidar->command.unsent & TMINI_UNSENT) != 0;
 }
 
 /* True while packets are expected. */

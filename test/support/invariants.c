@@ -289,11 +289,10 @@ static bool wishes_fit(const tmini_t *lidar)
 }
 
 /* Nothing; nothing after a half-sent command; two bytes, offered or not; the second one, likewise.
- * (4: not offered; 8: the first byte has been sent.) */
+ * (1: the first byte has been sent; 2: the command is being sent; 4: it has not been offered.) */
 static bool unsent_is_sound(unsigned unsent)
 {
-    return unsent == 0 || unsent == 8 || unsent == 2 || unsent == (2 | 4) || unsent == (1 | 8) ||
-           unsent == (1 | 4 | 8);
+    return unsent <= 3 || unsent == (2 | 4) || unsent == (1 | 2 | 4);
 }
 
 /* The same member counts questions, and the chances of a lidar whose packets stay away. */
@@ -307,9 +306,9 @@ static unsigned asks_max(uint8_t phase)
 
 static bool command_is_sound(const tmini_command_t *command)
 {
-    const unsigned bytes = command->unsent & TMINI_UNSENT_BYTES;
+    const bool is_sending = (command->unsent & TMINI_UNSENT) != 0;
     return is_operation(command->operation) && unsent_is_sound(command->unsent) &&
-           (bytes == 0 || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
+           (!is_sending || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
            command->steps <= STEPS_MAX && command->asks <= asks_max(command->phase) &&
            command->frequency_chz <= PLAUSIBLE_CHZ_MAX;

@@ -67,7 +67,7 @@ static void step(const void *data, tmini_scan_t *scan)
 /* The first byte of a command has been sent, and the second has not. */
 static bool is_half(void)
 {
-    return (lidar.command.unsent & 8u) != 0;
+    return (lidar.command.unsent & 1u) != 0;
 }
 
 /* In listen-only mode, no command is being sent. Without a wanted frequency, there is no frequency
