@@ -353,13 +353,16 @@ uint16_t tmini_command_due_ms(const tmini_t *lidar)
 void tmini_command_begin(tmini_t *lidar, tmini_event_t operation, uint8_t attempts)
 {
     tmini_command_t *const command = &lidar->command;
-    const bool may_send = command->phase == TMINI_PHASE_IDLE && operation != TMINI_EVENT_STOPPED;
     command->operation = (uint8_t)operation;
     command->attempts_left = (uint8_t)(attempts > 0 ? attempts - 1 : 0);
     command->is_repeated = false;
     command->steps = 0;
     command->asks = 0;
-    (void)(may_send ? on_quiet(lidar) : quiesce(lidar));
+    if (command->phase == TMINI_PHASE_IDLE && operation != TMINI_EVENT_STOPPED) {
+        (void)on_quiet(lidar);
+    } else {
+        (void)quiesce(lidar);
+    }
 }
 
 int tmini_command_reply(tmini_t *lidar, const uint8_t *content)
