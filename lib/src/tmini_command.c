@@ -31,13 +31,11 @@
 #define LAST_CHANCE_MS 100
 #define CHANCES_MAX 3
 
+/* What is sent when the line is quiet, and has one reply. */
 static const uint8_t codes[] = {
     [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
-    [TMINI_EVENT_STOPPED] = TMINI_COMMAND_STOP,
     [TMINI_EVENT_INFO] = TMINI_COMMAND_GET_INFO,
     [TMINI_EVENT_HEALTH] = TMINI_COMMAND_GET_HEALTH,
-    [TMINI_EVENT_FREQUENCY] = TMINI_COMMAND_GET_FREQUENCY,
-    [TMINI_EVENT_REBOOTED] = TMINI_COMMAND_REBOOT,
 };
 
 /* Begins a phase that lasts at most `timeout_ms`; 0: no limit. */
@@ -151,8 +149,8 @@ static int32_t chz_to_go(const tmini_t *lidar)
 bool tmini_command_has_frequency(const tmini_t *lidar)
 {
     const int32_t left = chz_to_go(lidar);
-    return lidar->command.wanted_chz == 0 ||
-           (left >= -TMINI_FREQUENCY_TOLERANCE_CHZ && left <= TMINI_FREQUENCY_TOLERANCE_CHZ);
+    return (left >= -TMINI_FREQUENCY_TOLERANCE_CHZ && left <= TMINI_FREQUENCY_TOLERANCE_CHZ) ||
+           lidar->command.wanted_chz == 0;
 }
 
 /* Overshoots by less than the finest step, so the frequency never leaves the permitted range. */
@@ -204,11 +202,11 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
         return await_another_frequency(lidar);
     }
     command->frequency_chz = (uint16_t)frequency_chz;
-    if (!command->is_repeated) {
-        command->asks = 0; /* A lidar that loses its power now gets the whole time again, once. */
-    }
     if (command->operation == TMINI_EVENT_REBOOTED) {
         return TMINI_OK;
+    }
+    if (!command->is_repeated) {
+        command->asks = 0; /* A lidar that loses its power now gets the whole time again, once. */
     }
     const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (!is_step && !may_be_late && tmini_command_has_frequency(lidar)) {
