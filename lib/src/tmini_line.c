@@ -79,8 +79,7 @@ static void note_delay(tmini_line_t *line, int32_t late_ms, bool are_parsed)
 /* Notes that bytes may be missing somewhere before `place`. */
 static void doubt_to(tmini_line_t *line, size_t place)
 {
-    line->doubt = true;
-    line->doubtful_to = place;
+    line->doubtful_to = place | TMINI_RING_CLOSED; /* The same distance, and never 0. */
 }
 
 /* The time since earlier bytes came, less `due_ms`, which the new ones need on the wire. */
@@ -136,7 +135,7 @@ static void note_work(tmini_line_t *line, uint32_t passed_ms)
     const bool counts = line->busy_ms > 0 || line->held > 0;
     const uint32_t busy_ms = counts ? line->busy_ms + passed_ms : 0;
     const uint32_t limited_ms = busy_ms < UINT8_MAX ? busy_ms : UINT8_MAX;
-    line->busy_ms = (uint8_t)(limited_ms > 0 ? limited_ms : 1);
+    line->busy_ms = (uint16_t)(limited_ms > 0 ? limited_ms : 1);
 }
 
 bool tmini_line_look(tmini_t *lidar, bool is_scanning)
@@ -185,9 +184,13 @@ static bool is_in_doubt(tmini_t *lidar)
 {
     tmini_line_t *const line = &lidar->line;
     const size_t left = tmini_ring_distance(tmini_ring_tail(&lidar->ring), line->doubtful_to);
-    const bool is_doubtful = line->doubt;
-    line->doubt = is_doubtful && left > 0 && left <= TMINI_RING_CLOSED / 2;
-    return is_doubtful;
+    if (line->doubtful_to == 0) {
+        return false;
+    }
+    if (left == 0 || left > TMINI_RING_CLOSED / 2) {
+        line->doubtful_to = 0;
+    }
+    return true;
 }
 
 /* True if too much time has passed since the scan's last packet. Damaged packets of which only a

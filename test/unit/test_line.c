@@ -86,8 +86,8 @@ static void tell_word(char *word)
     const uint32_t number = (uint32_t)strtoul(text, NULL, 0);
     const row_number_t numbers[] = {
         {"heard", is_heard},
-        {"doubt", lidar.line.doubt},
-        {"doubtful-to", lidar.line.doubtful_to},
+        {"doubt", lidar.line.doubtful_to != 0},
+        {"doubtful-to", lidar.line.doubtful_to % TMINI_RING_CLOSED},
         {"late", lidar.line.late_ms},
         {"arrived", lidar.line.received + lidar.line.held},
         {"heard-ms", lidar.line.heard_ms},
@@ -109,11 +109,11 @@ static void tell_word(char *word)
     } else if (row_is(word, "look")) {
         look_after(number, row_number(text));
     } else if (row_is(word, "after")) {
-        lidar.line.doubt = false;
+        lidar.line.doubtful_to = 0;
         lidar.line.late_ms = 0;
         look_after(number, 1);
     } else if (row_is(word, "no-doubt")) {
-        lidar.line.doubt = false;
+        lidar.line.doubtful_to = 0;
     } else if (row_is(word, "unsettled") || row_is(word, "settled")) {
         is_settled = word[0] == 's';
     } else if (row_is(word, "ring")) {

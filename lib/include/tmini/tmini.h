@@ -513,8 +513,7 @@ typedef struct {
 
 /* tmini_line.c */
 typedef struct {
-    bool doubt;         /* Bytes may be missing somewhere before `doubtful_to`. */
-    uint8_t busy_ms;    /* For how long not all that came has been handled, at most 255; 0: it has
+    uint16_t busy_ms;   /* For how long not all that came has been handled, at most 255; 0: it has
                          * been. */
     uint16_t late_ms;   /* By how much the latest bytes may be late, if not in doubt. */
     uint16_t silent_ms; /* Observed silence; at most 65535. */
@@ -522,7 +521,8 @@ typedef struct {
     uint32_t now_ms;    /* When the line was last looked at. It does not go back. */
     uint32_t heard_ms;  /* When bytes arrived last. */
     size_t received;    /* The place in the stream of the newest byte received. */
-    size_t doubtful_to;
+    size_t doubtful_to; /* Bytes may be missing somewhere before this place. It is never 0, because
+                         * TMINI_RING_CLOSED is set, which changes no distance; 0: no doubt. */
 } tmini_line_t;
 
 /* tmini.c: copied from the configuration. */
