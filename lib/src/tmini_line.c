@@ -43,7 +43,7 @@ static size_t held_by_port(const tmini_t *lidar)
 /* True if a silence may hide a turn: it is longer than max_pause_ms and than half a turn, at the
  * reported frequency or, while the motor is not up to speed, at 12 Hz. What a shorter silence hides
  * is visible in the angles, even if the true silence is half a turn longer. */
-static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
+TMINI_NOINLINE static bool may_hide_turn(const tmini_t *lidar, int32_t silent_ms)
 {
     const int32_t max_pause_ms = lidar->link.timing->max_pause_ms;
     if (max_pause_ms == 0 || silent_ms <= max_pause_ms) {
@@ -199,12 +199,17 @@ static bool is_in_doubt(tmini_t *lidar)
 static bool is_late(const tmini_t *lidar, uint32_t came_ms)
 {
     const tmini_builder_t *const builder = &lidar->decoder.builder;
+    if (!builder->open) {
+        return false;
+    }
     const uint32_t due_ms = transit_ms(tmini_parser_frame(&lidar->decoder.parser)->size);
-    return builder->open &&
-           may_hide_turn(lidar, (int32_t)(came_ms - due_ms - builder->scan.end_ms));
+    return may_hide_turn(lidar, (int32_t)(came_ms - due_ms - builder->scan.end_ms));
 }
 
 bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms)
 {
-    return is_in_doubt(lidar) || is_late(lidar, came_ms);
+    if (is_in_doubt(lidar)) {
+        return true;
+    }
+    return is_late(lidar, came_ms);
 }
