@@ -22,8 +22,11 @@
  * is a small negative angle, not almost a whole turn. */
 static int32_t swept(uint16_t from, uint16_t to)
 {
-    const int32_t forwards = (int32_t)to - from + (to < from ? CIRCLE_Q6 : 0);
-    return forwards > CIRCLE_Q6 - JUMP_Q6 ? forwards - CIRCLE_Q6 : forwards;
+    const int32_t angle = (int32_t)to - from;
+    if (angle <= -JUMP_Q6) {
+        return angle + CIRCLE_Q6;
+    }
+    return angle > CIRCLE_Q6 - JUMP_Q6 ? angle - CIRCLE_Q6 : angle;
 }
 
 /* The LSA of a packet with one sample has no meaning. */
