@@ -15,8 +15,8 @@
 /* More bytes than this may have been half a turn: at 12 Hz a turn has about 1100 (section 9.7). */
 #define GAP_MAX 500
 
-/* A sample takes 250 us to measure (section 1) and 130 us on the wire. */
-#define SAMPLE_SENT_US 380u
+/* A sample takes 250 us to measure (section 1) and 130 us on the wire: 0.38 ms in 1/65536 ms. */
+#define SAMPLE_SENT_Q16_MS 24904u
 
 /* The angle swept clockwise from one direction to another. A small jitter backwards (section 9.6)
  * is a small negative angle, not almost a whole turn. */
@@ -111,7 +111,7 @@ static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first,
     scan->complete = false;
     scan->upside_down = false;
     scan->gaps = tmini_packet_is_start(first) ? 0 : 1;
-    scan->start_ms = now_ms - (uint32_t)(first->count - 1u) * SAMPLE_SENT_US / 1000u;
+    scan->start_ms = now_ms - ((uint32_t)(first->count - 1u) * SAMPLE_SENT_Q16_MS >> 16);
     scan->checksum_errors = first->frame->checksum_errors; /* finish() subtracts this. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;
