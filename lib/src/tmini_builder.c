@@ -126,7 +126,9 @@ static void append_points(tmini_builder_t *builder, const tmini_packet_t *packet
                                              (size_t)builder->capacity - scan->count);
     if (!tmini_frame_intact(packet->frame)) {
         count_one(&scan->gaps);
-        builder->open = scan->packets > 0; /* No scan is empty. */
+        if (scan->packets == 0) { /* No scan is empty. */
+            builder->open = false;
+        }
         return;
     }
     scan->count = (uint16_t)(scan->count + count);
@@ -174,7 +176,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
         const int32_t ahead = swept(builder->previous_angle_q6, packet->first_angle_q6);
         angle += builder->swept_q6 + ahead;
         const bool goes_on = !is_start && continues(packet, ahead, angle);
-        if (!(goes_on || is_start) || tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6) {
+        if (tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6 || !(goes_on || is_start)) {
             count_one(&builder->scan.gaps);
         }
         if (!goes_on) {
