@@ -414,6 +414,7 @@ static bool expect_number(const char *word)
         {"scans", counters.scans},
         {"late", counters.late_scans},
         {"withheld", counters.points_withheld},
+        {"timeouts", counters.timeouts},
         {"losses", counters.losses},
         {"recoveries", counters.recoveries},
         {"restarts", counters.restarts},

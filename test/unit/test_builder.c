@@ -442,6 +442,8 @@ static const row_t rows[] IN_FLASH = {
         "turn P:1,16 P!:17,17 new turn P!:1,17"),
     ROW(jitter_backwards_does_not_count_as_a_turn, /* Two degrees forwards, two back. */
         "S:0 6( P:10d,12d ) P:13d,350d P:351d,360d+10 P!:11,140"),
+    ROW(jitter_backwards_across_0_does_not_count_as_a_turn,
+        "S:5 P:10,23030 P:23035,40 P:30,90d gaps:0"),
     ROW(a_start_packet_a_little_before_a_full_turn_closes_the_scan,
         "S:117d rest:117d end:115d " COMPLETE),
     /* ---- Time ---- */

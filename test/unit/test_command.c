@@ -45,7 +45,8 @@ static const row_t tales[] IN_FLASH = {
         "idle info >90 takes:9 <info !INFO info >90 <info !INFO"),
     /* ---- Replies and attempts ---- */
     ROW(a_question_without_an_answer_is_asked_three_times,
-        "idle info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN"),
+        "idle info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN "
+        "timeouts:3"),
     ROW(an_answer_to_a_later_attempt_leaves_the_state_unknown,
         "idle info >90 +2000 >65 +50 >90 <info !INFO @UNKNOWN"),
     ROW(the_time_for_a_reply_begins_when_the_port_has_taken_the_command,
@@ -89,7 +90,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(the_first_question_is_repeated_each_250_ms_until_its_answer,
         "idle frequency >0D +250 >0D +250 >0D <600 !FREQUENCY #600 @IDLE"),
     ROW(a_lidar_that_never_answers_is_asked_30_times,
-        "idle frequency 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT @UNKNOWN #0"),
+        "idle frequency 29( >0D +250 ) timeouts:0 >0D +250 !FAILED ?TIMEOUT @UNKNOWN #0 "
+        "timeouts:1"),
     ROW(an_implausible_frequency_is_an_error, /* In 16 bits the last two would be 0 and 600. */
         "idle frequency >0D <0 !FAILED ?REPLY #0 / idle frequency >0D <99 !FAILED ?REPLY / idle "
         "frequency >0D <2001 !FAILED ?REPLY / idle frequency >0D <65535 !FAILED ?REPLY / idle "
@@ -119,7 +121,8 @@ static const row_t tales[] IN_FLASH = {
         "idle set:800 >0D <600 +50 >0B <600 ~1999 !NONE ~1 >0D <700 +50 >0B <800 +50 >0D <800 "
         "!FREQUENCY"),
     ROW(a_lidar_that_refuses_steps_fails_with_an_error_of_its_reply,
-        "idle set:800 >0D <600 +50 3( >0B <600 ~2000 >0D <600 +50 ) >0B <600 ~2000 !FAILED ?REPLY"),
+        "idle set:800 >0D <600 +50 3( >0B <600 ~2000 >0D <600 +50 ) >0B <600 ~2000 !FAILED ?REPLY "
+        "timeouts:4"),
     ROW(another_reply_to_a_step_is_awaited_for_2_s_even_if_replies_have_no_limit,
         "reply:0 idle set:700 >0D <600 +50 >0B <600 !NONE +2000 >0D <600 +50 >0B"),
     ROW(a_step_without_an_answer_makes_the_driver_ask_anew,
