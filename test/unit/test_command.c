@@ -42,7 +42,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_first_byte_that_was_taken_is_not_sent_again,
         "idle takes:1 info >A5 takes:2 stop >!65 !FAILED ?ABORTED +50 !STOPPED"),
     ROW(a_port_that_reports_more_bytes_than_it_got_has_taken_all,
-        "idle info >90 takes:9 <info !INFO info >90 <info !INFO"),
+        "idle info >90 takes:256 <info !INFO info >90 <info !INFO"),
     /* ---- Replies and attempts ---- */
     ROW(a_question_without_an_answer_is_asked_three_times,
         "idle info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN "
