@@ -26,7 +26,7 @@
 #include "tmini/tmini.h"
 
 #define WATCH_PACKETS 1024u
-#define WATCH_TURNS 32u
+#define WATCH_TURNS 128u     /* Those of a trial, and those that pass after its end. */
 #define WATCH_HISTORY 65536u /* Bytes: 5 s of scanning. */
 
 /* The time after the end of the last trouble in which scans must resume. In the worst case the
