@@ -433,10 +433,10 @@ static void end_scan(tmini_t *lidar, bool is_doubtful)
 static void take_packet(tmini_t *lidar)
 {
     const uint32_t came_ms = arrival_ms(lidar);
-    const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
     if (!note_scanning(lidar)) {
         return; /* A packet of the tail after a stop, or of a lidar that is not to scan. */
     }
+    const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);
     expect_packet(lidar);
     if (tmini_decoder_take(&lidar->decoder, is_doubtful, came_ms, lidar->line.late_ms)) {
         end_scan(lidar, is_doubtful);
