@@ -69,11 +69,11 @@ fuzz() {
     [ "$status" -eq 0 ] || { echo "$1: found something, see $build/$1.log"; exit 1; }
 }
 
-# keep TARGET: of inputs that reach the same edges of the program, keeps only the shortest.
+# keep TARGET: keeps the fewest inputs that reach all edges of the program that any reaches.
 keep() {
     rm -rf "$build/kept"
     mkdir -p "$build/kept"
-    (cd "$build" && "./$1" -merge=1 -use_counters=0 -max_len=4096 kept "corpus_$1") \
+    (cd "$build" && "./$1" -set_cover_merge=1 -use_counters=0 -max_len=4096 kept "corpus_$1") \
         >"$build/$1.log" 2>&1 || { tail "$build/$1.log"; exit 1; }
     for input in "$build"/kept/*; do
         base64 -w 0 "$input"
