@@ -164,7 +164,7 @@ PROOFS = [
            "(tmini_command_end(lidar, TMINI_ERROR_ABORTED), true);"),
     driver("advance", "lib/src/tmini_command.c", "command->steps == STEPS_MAX",
            "command->steps > STEPS_MAX", slow=True),
-    driver("start", "lib/src/tmini.c", "    if (!is_to_scan(lidar)) {", "    if (true) {"),
+    driver("start", "lib/src/tmini.c", "        if (is_to_scan(lidar)) {", "        if (false) {"),
     driver("request_info", "lib/src/tmini.c",
            "(tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED)) {\n        return TMINI_ERROR_STATE;",
            "(false) {\n        return TMINI_ERROR_STATE;"),
