@@ -12,6 +12,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=test/support/compilers.sh
+. "$root/test/support/compilers.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -28,10 +30,8 @@ case ${1:-} in
         exit 2
         ;;
 esac
-if ! echo '#include <string.h>' | $compiler -E - >/dev/null 2>&1; then
-    echo "skipped: ${compiler%% *} or its C library is not installed"
-    exit 77
-fi
+# shellcheck disable=SC2086 # a command of several words
+need_compiler $compiler
 
 # assembly INCLUDE_FOLDER: prints the machine code of both sides of the ring, a function each.
 assembly() {

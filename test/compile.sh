@@ -14,21 +14,11 @@
 set -eu
 
 lib=$(cd "$(dirname "$0")/../lib" && pwd)
+# shellcheck source=test/support/compilers.sh
+. "$lib/../test/support/compilers.sh"
 warnings="-pedantic -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wundef -Werror"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-
-# Skips a compiler whose C library is missing: for some targets it is a separate package.
-need_compiler() {
-    if ! command -v "$1" >/dev/null; then
-        echo "skipped: $1 is not installed"
-        exit 77
-    fi
-    if ! echo '#include <string.h>' | "$@" -E - >/dev/null 2>&1; then
-        echo "skipped: $1 finds no C library"
-        exit 77
-    fi
-}
 
 # compile LANGUAGE FILE COMPILER FLAG…
 compile() {
@@ -72,9 +62,7 @@ check_clang() {
     # shellcheck disable=SC2086 # a command of several words
     need_compiler $gcc
     # shellcheck disable=SC2086
-    headers=$(echo '#include <string.h>' | $gcc -E - |
-        sed -n 's|^# 1 "\(.*\)/string\.h".*|\1|p' | head -n 1)
-    set -- clang "$@" -Os -isystem "$headers"
+    set -- clang "$@" -Os -isystem "$(headers_of $gcc)"
     check_c "$@"
     bench=$lib/../test/qa/bench
     for source in "$lib"/src/*.c "$bench/emulated/main.c" "$bench/limit.c"; do

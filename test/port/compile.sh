@@ -14,6 +14,8 @@ set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
+# shellcheck source=test/support/compilers.sh
+. "$root/test/support/compilers.sh"
 warnings="-Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Werror"
 
 # stand_in PORT: prints the options with which the port finds its platform.
@@ -26,17 +28,6 @@ stand_in() {
         stm32) echo "-isystem $here/stm32/stm32_model -isystem $root/test/support" ;;
         zephyr) echo "-isystem $here/zephyr/zephyr_stub -DZEPHYR_ASYNC" ;;
     esac
-}
-
-need() {
-    if ! command -v "$1" >/dev/null; then
-        echo "skipped: $1 is not installed"
-        exit 77
-    fi
-    if ! echo '#include <string.h>' | "$@" -E - >/dev/null 2>&1; then
-        echo "skipped: $1 finds no C library"
-        exit 77
-    fi
 }
 
 # check_header HEADER COMPILER…: tmini_stm32_usart_common.h is a part of two sources, and
@@ -61,8 +52,8 @@ check_results() {
 
 check_headers() {
     check_results
-    need cc
-    need c++ -x c++
+    need_compiler cc
+    need_compiler c++ -x c++
     for header in "$root"/port/*/*.h; do
         check_header "$header" cc -std=c99 -x c
         check_header "$header" c++ -std=c++11 -x c++
@@ -77,7 +68,7 @@ check_headers() {
 check_ports() {
     ports=$1
     shift
-    need "$@"
+    need_compiler "$@"
     for port in $ports; do
         for source in "$root/port/$port"/*.c; do
             # shellcheck disable=SC2046,SC2086 # several options
@@ -85,12 +76,6 @@ check_ports() {
                 -c "$source" -o /dev/null
         done
     done
-}
-
-# headers_of GCC FLAG…: the folder of its C library's headers, which Clang does not find.
-headers_of() {
-    echo '#include <string.h>' | "$@" -E - 2>/dev/null |
-        sed -n 's|^# 1 "\(.*\)/string\.h".*|\1|p' | head -n 1
 }
 
 picolibc="riscv64-unknown-elf-gcc --specs=picolibc.specs"
