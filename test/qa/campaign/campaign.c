@@ -358,12 +358,29 @@ static uint64_t came_us(uint32_t place)
     return watch.packets[(watch.first + i) % WATCH_PACKETS].at_us;
 }
 
-/* Returns why one incomplete scan may have points of two turns: the library measures a silence only
- * by the times of polls and hand-overs. MIXED_KINDS: nothing explains it. */
+static bool is_touched(uint32_t place)
+{
+    return watch.turns[sim_judge_sample(&watch.judge, place)->turn % WATCH_TURNS].is_touched;
+}
+
+/* It is not known here which bytes DMA has overwritten. */
+static bool may_be_overwritten(void)
+{
+    tmini_counters_t counters;
+    tmini_counters(&bed.lidar, &counters);
+    return bed.config.rx_dma && (counters.bytes_overrun > 0 || bed.gaps > 0);
+}
+
+/* Returns why one incomplete scan may have points of two turns: something is lost between them, and
+ * the library measures a silence only by the times of polls and hand-overs. MIXED_KINDS: nothing
+ * explains it. */
 static mixed_t explain(const sim_reading_t *reading)
 {
     const uint32_t pause_us = bed.timing.max_pause_ms * 1040u + bed.poll_ms * 1000u +
                               program.preempt_us + (bed.held != NULL ? held.every_us : 0) + 10000u;
+    if (!is_touched(reading->before) && !is_touched(reading->odd) && !may_be_overwritten()) {
+        return MIXED_KINDS;
+    }
     if (bed.timing.max_pause_ms == 0) {
         return MIXED_UNTIMED;
     }
@@ -464,8 +481,8 @@ static void judge_end(void)
     verdicts.bytes += bed.known;
     verdicts.overrun += counters.bytes_overrun;
     verdicts.gaps += bed.gaps;
-    if (bed.config.rx_dma && (counters.bytes_overrun > 0 || bed.gaps > 0)) {
-        return; /* It is not known here which bytes DMA has overwritten. */
+    if (may_be_overwritten()) {
+        return;
     }
     judge_cost();
     if (bed.events[TMINI_EVENT_LOST] > 0 || bed.config.max_points < POINTS) {
