@@ -26,7 +26,7 @@ static void reset(tmini_t *lidar)
 
 void tmini_recovery_wish(tmini_t *lidar, tmini_event_t event)
 {
-    lidar->recovery.wishes |= (uint8_t)BIT(event);
+    lidar->recovery.wishes = (uint8_t)(lidar->recovery.wishes | BIT(event));
     lidar->recovery.is_lost = false; /* A lost lidar gets no question. */
     reset(lidar);
 }
