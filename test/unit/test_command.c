@@ -33,7 +33,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(the_time_to_send_runs_from_the_first_offer,
         "takes:0 info ~99 !NONE ~1 !FAILED ?WRITE @UNKNOWN"),
     ROW(a_command_made_long_before_the_next_poll_is_still_offered_for_100_ms,
-        "idle start >0D <600 takes:0 !NONE ~99 !NONE takes:2 >60"),
+        "wish:600 idle start >0D <600 takes:0 !FREQUENCY ~99 !NONE ~99 !NONE takes:2 >60"),
     ROW(a_port_that_fails_ends_the_command, "takes:-1 info !NONE ~1 !FAILED ?WRITE @UNKNOWN"),
     ROW(a_command_that_the_port_refuses_is_offered_again_a_millisecond_later,
         "idle !NONE ~1 takes:-1 health ~1 takes:2 >92"),
@@ -42,7 +42,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_first_byte_that_was_taken_is_not_sent_again,
         "idle takes:1 info >A5 takes:2 stop >!65 !FAILED ?ABORTED +50 !STOPPED"),
     ROW(a_port_that_reports_more_bytes_than_it_got_has_taken_all,
-        "idle info >90 takes:256 <info !INFO info >90 <info !INFO"),
+        "idle takes:256 info >90 !NONE <info !INFO"),
     /* ---- Replies and attempts ---- */
     ROW(a_question_without_an_answer_is_asked_three_times,
         "idle info >90 +2000 >65 +50 >90 +2000 >65 +50 >90 +2000 !FAILED ?TIMEOUT @UNKNOWN "
@@ -70,6 +70,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_stop_ends_on_a_quiet_line, "stop @STOPPING >65 +50 !STOPPED @IDLE"),
     ROW(a_stop_is_repeated_while_packets_come_and_then_fails,
         "stop >65 2( 14( ~40 <P ) ~40 >65 ) 14( ~40 <P ) ~40 !FAILED ?TIMEOUT @UNKNOWN"),
+    ROW(a_repeated_stop_ends_on_a_quiet_line_too,
+        "stop >65 14( ~40 <P ) ~40 >65 +50 !STOPPED @IDLE"),
     ROW(a_lidar_that_scans_on_after_its_stop_failed_is_stopped_again_after_half_a_second,
         "attempts:1 stop >65 ~300 <P !NONE ~299 <P !NONE ~1 !FAILED +500 !NONE <P !UNWANTED >65 "
         "+50 !STOPPED @IDLE"),
@@ -131,6 +133,9 @@ static const row_t tales[] IN_FLASH = {
                                                  ">0D <710 +50 >0A <700 +50 >0D <700 !FREQUENCY"),
     ROW(a_lidar_that_loses_its_power_between_steps_is_asked_until_it_answers,
         "idle set:800 >0D <600 +50 >0B +2000 21( >0D +250 ) >0D +250 !FAILED ?TIMEOUT #0"),
+    ROW(a_step_without_an_answer_counts_as_eight_questions_of_30,
+        "idle set:800 >0D <600 +50 >0B +2000 13( >0D +250 ) >0D <600 +50 >0B +2000 !FAILED "
+        "?TIMEOUT"),
     ROW(a_packet_while_the_frequency_is_set_means_that_the_stop_was_lost,
         "idle set:700 >0D <P >65 +50 >0D <600 +50 >0B <P >65 +50 >0D <600 +50 >0B <600 !NONE <P "
         ">65 +50 >0D <700 +50 >0D <700 !FREQUENCY"),
@@ -138,7 +143,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_reboot_ends_when_the_lidar_answers_again,
         "idle reboot >40 @BUSY +1000 >0D +250 >0D <600 !REBOOTED @IDLE #600"),
     ROW(a_lidar_that_does_not_come_back_from_its_reboot_fails_it,
-        "idle reboot >40 +1000 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT"),
+        "idle frequency >0D <600 !FREQUENCY reboot >40 +1000 29( >0D +250 ) >0D +250 !FAILED "
+        "?TIMEOUT #0"),
     ROW(a_packet_after_a_reboot_leads_to_a_stop_and_not_to_another_reboot,
         "idle reboot >40 +1000 >0D <P >65 +50 >0D <600 !REBOOTED"),
     ROW(packets_during_a_reboot_mean_nothing, "idle reboot >40 <P +1000 >0D <600 !REBOOTED"),
