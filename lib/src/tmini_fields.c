@@ -288,8 +288,7 @@ static void see_nothing(tmini_field_t *field)
 {
     if (is_unseen(field)) {
         make_blind(field);
-    } else if (++field->free_scans >= field->scans) {
-        field->free_scans = field->scans; /* It does not wrap around. */
+    } else if (++field->free_scans >= field->scans) { /* From then on their number is of no use. */
         field->state = TMINI_FIELD_FREE;
     }
 }

@@ -14,7 +14,7 @@
 #include <string.h>
 
 static const tmini_xy_t box[] = {{0, -300}, {600, 300}}; /* From straight left to straight right. */
-static tmini_xy_t memory[7] = {{-16000, -16000}}; /* What is before the corners does not count. */
+static tmini_xy_t memory[8] = {{16000, -16000}}; /* What is around the corners does not count. */
 static tmini_xy_t *const polygon = &memory[1];
 static tmini_field_t field[2];
 static tmini_fields_t fields;
@@ -101,6 +101,7 @@ static size_t read_corners(const char *text)
         polygon[count].x_mm = (int16_t)next_number(&text);
         polygon[count++].y_mm = (int16_t)next_number(&text);
     }
+    polygon[count] = memory[0];
     return count;
 }
 
@@ -213,7 +214,8 @@ static const row_t rows[] IN_FLASH = {
         "scans:255 box free:254 BLIND free:1 FREE free:1 FREE see:2 free:254 OCCUPIED"),
     ROW(a_field_that_cannot_be_is_refused, /* One corner; flat; low; a line; too far away. */
         "no:600,300 no:0,0,0,300 no:0,10,300,10 no:0,0,100,100,300,300 no:0,0,16384,300 "
-        "no:0,0,100,-16384 lidar:0,-16384 no:0,-300,600,300 lidar:0,0 unseen:101 "
+        "no:16384,0,300,300 no:0,0,100,-16384 lidar:0,-16384 no:0,-300,600,300 lidar:0,0 "
+        "unseen:101 "
         "no:0,-300,600,300 unseen:100 corners:0,-300,600,300"),
     ROW(fields_set_up_again_are_blind, "free:3 box BLIND free:2 BLIND free:1 FREE"),
     /* ---- Places ---- */
@@ -428,6 +430,42 @@ void test_each_field_is_judged_for_itself_and_set_back_with_its_list(void)
     TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
     see_free(2);
     is(TMINI_FIELD_BLIND);
+}
+
+void test_all_points_of_a_large_scan_count(void)
+{
+    static tmini_point_t many[300];
+    scan = (tmini_scan_t){.points = many, .count = 300, .complete = true, .end_ms = now_ms};
+    many[298] = point_at(0, 400);
+    many[299] = point_at(2, 400);
+    tmini_fields_step(&fields, &scan);
+    is(TMINI_FIELD_OCCUPIED);
+}
+
+/* Too large for a small machine. */
+void test_a_list_may_have_65537_fields_and_what_is_after_it_does_not_count(void)
+{
+#if defined(__linux__)
+    static tmini_field_t many[65538];
+    tmini_field_t *const last = &many[65536];
+    for (size_t i = 0; i < 65538; i++) {
+        many[i] = (tmini_field_t){.corners = box, .corner_count = 2, .scans = 1};
+    }
+    fields = (tmini_fields_t){.list = many, .count = 65538};
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_fields_init(&fields));
+    fields.count = 65537;
+    last[1].inside = 7;
+    last[1].directions = 7;
+    see_free(1);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(last, now_ms));
+    see(2, 0, true);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_OCCUPIED, tmini_field_state(last, now_ms));
+    tmini_fields_clear(&fields);
+    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_BLIND, tmini_field_state(last, now_ms));
+    TEST_ASSERT_EQUAL_UINT16(7, last[1].inside);
+    TEST_ASSERT_EQUAL_UINT16(7, last[1].directions);
+    TEST_ASSERT_EQUAL_UINT32(0, last[1].seen_ms);
+#endif
 }
 
 void test_fields_without_corners_or_a_list_are_refused(void)
