@@ -48,7 +48,7 @@ PLACES = [
     ("port/esp32/|examples/esp32_idf/", "-R ^test_(port_esp32|bridge_web|example_esp32)", 1),
     ("port/arduino/|examples/esp32_arduino/", "-R ^test_arduino", 1),
     ("(?:port|examples)/(freertos|pico|zephyr|template)/", "-R ^test_(port|device|example)_{0}", 1),
-    ("port/ros2/|examples/micro_ros/", "-R ^test_(laser|ros_.*|example_laser_scan|example_scan_node)$", 1),
+    ("port/ros2/|examples/micro_ros/", "-R ^test_(laser|ros_.*|example_scan_node)$", 1),
     ("port/python/tmini/", "-R ^python$", 2),
     ("examples/mavlink/", "-R ^mavlink$", 1),
     ("examples/web/page/", "-L ^browser$", 2),

@@ -2,10 +2,11 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Tests the node of examples/micro_ros in virtual time, with the simulated lidar and a virtual
- * agent. */
+ * agent. The conversion of a scan has a test of its own: test/port/ros2/test_laser.c. */
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "machine.h"
 #include "scan_node.h"
@@ -104,6 +105,7 @@ void setUp(void)
     virtual_agent_reset(wait);
     virtual_agent.present = true;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
+    memset(&node, 0xEE, sizeof node);
     scan_node_init(&node, &lidar, &config, frame);
 }
 
@@ -125,7 +127,41 @@ void test_a_message_shows_the_room(void)
     run_for(5000);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, 0.7f, virtual_agent.message.ranges.data[270]);
     TEST_ASSERT_FALSE(fabsf(virtual_agent.message.ranges.data[90] - 0.7f) < 0.1f);
-    TEST_ASSERT_FLOAT_WITHIN(0.02f, 0.1667f, virtual_agent.message.scan_time);
+}
+
+void test_every_field_of_a_message_is_filled_in(void)
+{
+    const sensor_msgs__msg__LaserScan *const message = &virtual_agent.message;
+    run_for(5000);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 6.26573201f, message->angle_max - message->angle_min);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.01745329f, message->angle_increment);
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, 0.1667f, message->scan_time);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, -message->scan_time / 360, message->time_increment);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.05f, message->range_min);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 12.0f, message->range_max);
+    TEST_ASSERT_EQUAL_PTR(frame, message->header.frame_id.data);
+    TEST_ASSERT_EQUAL_UINT(5, message->header.frame_id.size);
+    TEST_ASSERT_EQUAL_UINT(6, message->header.frame_id.capacity);
+    TEST_ASSERT_EQUAL_PTR(node.memory.ranges, message->ranges.data);
+    TEST_ASSERT_EQUAL_UINT(360, message->ranges.size);
+    TEST_ASSERT_EQUAL_UINT(360, message->ranges.capacity);
+    TEST_ASSERT_EQUAL_PTR(node.memory.intensities, message->intensities.data);
+    TEST_ASSERT_EQUAL_UINT(360, message->intensities.size);
+    TEST_ASSERT_EQUAL_UINT(360, message->intensities.capacity);
+}
+
+/* The last quarter of a turn of 100 ms, which began at 1000; the packet after it came late. */
+void test_the_stamp_of_a_part_is_when_its_turn_ended(void)
+{
+    const tmini_scan_t part = {
+        .points = points, .count = 1, .frequency_chz = 1000, .start_ms = 1075, .end_ms = 1200};
+    points[0] = (tmini_point_t){270 * 64, 1000, 0, 0};
+    TEST_ASSERT_TRUE(
+        laser_scan_fill(&node.message, &node.memory, &part, INT64_C(1790000000123456789)));
+    TEST_ASSERT_EQUAL_INT32(1790000000, node.message.header.stamp.sec);
+    TEST_ASSERT_UINT32_WITHIN(500000, 23456789, node.message.header.stamp.nanosec);
+    TEST_ASSERT_FALSE(laser_scan_fill(&node.message, &node.memory, NULL, 0));
+    TEST_ASSERT_EQUAL_INT32(1790000000, node.message.header.stamp.sec);
 }
 
 /* How much later the last stamp is than the scan's end, which is the next start packet. */
@@ -143,7 +179,7 @@ void test_a_messages_stamp_is_the_scans_end_in_the_agents_clock(void)
     while (virtual_agent.published == published) {
         run_for(1);
     }
-    TEST_ASSERT_TRUE(virtual_agent.synchronised);
+    TEST_ASSERT_EQUAL_UINT(1, virtual_agent.synchronisations);
     TEST_ASSERT_TRUE(stamp_is_late_ns() >= 0 && stamp_is_late_ns() <= 1000000);
 }
 

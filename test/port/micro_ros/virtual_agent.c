@@ -51,9 +51,9 @@ rmw_ret_t rmw_uros_ping_agent(int timeout_ms, uint8_t attempts)
 rmw_ret_t rmw_uros_sync_session(int timeout_ms)
 {
     TEST_ASSERT_TRUE(virtual_agent.support_open);
-    virtual_agent.synchronised = ask("sync", timeout_ms) == RCL_RET_OK;
-    virtual_agent.synchronisations += virtual_agent.synchronised;
-    return virtual_agent.synchronised ? RMW_RET_OK : RMW_RET_ERROR;
+    const rmw_ret_t result = ask("sync", timeout_ms);
+    virtual_agent.synchronisations += result == RMW_RET_OK;
+    return result;
 }
 
 int64_t rmw_uros_epoch_nanos(void)

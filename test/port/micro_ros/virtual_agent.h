@@ -21,7 +21,6 @@ typedef struct {
     bool support_open;
     bool node_open;
     bool publisher_open;
-    bool synchronised;
     unsigned synchronisations;
     int longest_wait_ms;
     unsigned published;
