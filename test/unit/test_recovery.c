@@ -136,7 +136,8 @@ static const row_t tales[] IN_FLASH = {
         "next:20 ~20 next:0 !STOPPED"),
     ROW(a_task_sleeps_no_longer_than_a_line_may_be_noisy,
         "quiet:599 stop >65 !NONE 3( ~300 <junk !NONE ) ~240 !NONE next:9 ~9 >65 / stop >65 6( ~40 "
-        "<junk !NONE ) ~30 !NONE next:20"),
+        "<junk !NONE ) ~30 !NONE next:20 / quiet:300 stop >65 5( ~50 !NONE ) ~10 <junk !NONE "
+        "next:50"),
     ROW(a_task_sleeps_until_a_reply_is_overdue,
         "idle info >90 !NONE next:2000 ~500 next:1500 ~1600 next:0 >65"),
     ROW(an_event_or_a_byte_that_waits_for_the_port_is_polled_at_once,
