@@ -7,8 +7,6 @@
 #include "lidar.h"
 #include "usart.h"
 
-#include <string.h>
-
 #include "console.h"
 #include "machine.h"
 #include "unity.h"
@@ -74,17 +72,9 @@ static void work_for(uint32_t ms)
     }
 }
 
-/* Scans for some seconds in a room with an obstacle 10 degrees wide at this angle. */
-static void scan_with(uint16_t degrees, uint16_t near_mm)
-{
-    if (near_mm > 0) {
-        sim_place_obstacle(&machine.lidar, (uint16_t)(degrees * 64), 640, near_mm);
-    }
-    lidar_start(&huart1);
-    work_for(3000);
-}
-
-void test_the_robot_may_move_only_when_all_has_been_seen_and_is_far(void)
+/* Only when all has been seen and is far may the robot move, and only with a healthy lidar; without
+ * scans it stops within 300 ms of the last whole one. */
+void test_the_robot_moves_only_while_it_may(void)
 {
     lidar_start(&huart1);
     work_for(200);
@@ -92,42 +82,17 @@ void test_the_robot_may_move_only_when_all_has_been_seen_and_is_far(void)
     work_for(3000);
     TEST_ASSERT_TRUE(may_move);
     TEST_ASSERT_GREATER_THAN_UINT16(1000, lidar_ahead_mm());
-}
-
-void test_printing_leaves_time_for_the_lidar(void)
-{
-    scan_with(0, 0);
-    work_for(5000);
-    assert_console_leaves_time(1024);
-    assert_last_said("lidar scanning, faults none, scans ");
-}
-
-void test_something_near_in_front_stops_the_robot(void)
-{
-    scan_with(350, 250);
+    sim_place_obstacle(&machine.lidar, 350 * 64, 640, 250);
+    work_for(1000);
     TEST_ASSERT_FALSE(may_move);
     TEST_ASSERT_UINT16_WITHIN(10, 250, lidar_ahead_mm());
-}
-
-void test_something_near_at_the_back_does_not(void)
-{
-    scan_with(180, 250);
-    TEST_ASSERT_TRUE(may_move);
-}
-
-void test_a_faulty_lidar_stops_the_robot_whatever_it_measures(void)
-{
-    scan_with(0, 0);
+    sim_clear_obstacles(&machine.lidar);
     sim_set_health(&machine.lidar, SIM_HEALTH_PD);
-    work_for(1000);
+    work_for(1500);
     TEST_ASSERT_GREATER_THAN_UINT16(1000, lidar_ahead_mm());
     TEST_ASSERT_FALSE(may_move);
-}
-
-/* Within 300 ms of the last whole scan. */
-void test_a_robot_without_scans_stops(void)
-{
-    scan_with(0, 0);
+    sim_set_health(&machine.lidar, 0);
+    work_for(1500);
     machine_power(false);
     work_for(90);
     TEST_ASSERT_TRUE(may_move);
@@ -135,26 +100,19 @@ void test_a_robot_without_scans_stops(void)
     TEST_ASSERT_FALSE(may_move);
 }
 
-void test_reception_continues_after_line_errors_and_after_a_stop(void)
-{
-    scan_with(0, 0);
-    machine_receive(MODEL_FE, (const uint8_t *)"", 1);
-    work_for(5);
-    huart1.RxState = HAL_UART_STATE_READY;
-    work_for(1000);
-    TEST_ASSERT_TRUE(may_move);
-}
-
 /* At each call, at least 3 packets wait. The LED changes with every complete scan, six per
  * second. */
-void test_a_main_loop_of_30_ms_loses_nothing(void)
+void test_a_main_loop_of_30_ms_loses_nothing_and_printing_leaves_time_for_the_lidar(void)
 {
-    scan_with(0, 0);
+    lidar_start(&huart1);
+    work_for(3000);
     led_changes = 0;
     calls_every_ms = 30;
     work_for(5000);
     calls_every_ms = 1;
     TEST_ASSERT_UINT32_WITHIN(1, 30, led_changes);
+    assert_console_leaves_time(1024);
+    assert_last_said("lidar scanning, faults none, scans ");
 }
 
 void test_a_uart_not_set_up_as_in_the_readme_calls_the_error_handler(void)
@@ -166,14 +124,4 @@ void test_a_uart_not_set_up_as_in_the_readme_calls_the_error_handler(void)
     huart1.Init.BaudRate = 115200;
     lidar_start(&huart1);
     TEST_ASSERT_EQUAL_UINT32(2, errors_handled);
-}
-
-void test_a_lidar_that_does_not_answer_is_asked_again(void)
-{
-    machine_power(false);
-    lidar_start(&huart1);
-    work_for(20000); /* Three attempts have failed. */
-    memset(model.sent, 0, sizeof model.sent);
-    work_for(3000);
-    TEST_ASSERT_EQUAL_HEX8(0xA5, model.sent[0]);
 }
