@@ -74,12 +74,11 @@ class Simulator
 class Observer : public Listener
 {
   public:
-    void take(const tmini_scan_t &scan, std::uint32_t age_ms) override
+    void take(const tmini_scan_t &scan, std::uint32_t) override
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         scans++;
         frequency_chz = scan.frequency_chz;
-        oldest_ms = age_ms > oldest_ms ? age_ms : oldest_ms;
         changed_.notify_all();
     }
     void tell(Level, const std::string &text) override
@@ -119,7 +118,6 @@ class Observer : public Listener
     int scans = 0;
     int looks = 0;
     std::uint16_t frequency_chz = 0;
-    std::uint32_t oldest_ms = 0;
     std::string told;
     bool is_subscribed = false;
 
