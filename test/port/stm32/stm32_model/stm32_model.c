@@ -208,7 +208,7 @@ uint32_t model_dma_left(void)
     return left;
 }
 
-uint32_t model_read(const volatile uint32_t *at)
+uint32_t read_register(const volatile uint32_t *at)
 {
 #ifdef STM32_MODEL_SR
     const volatile uint32_t *const status = &model_usart.SR;
@@ -230,7 +230,7 @@ uint32_t model_read(const volatile uint32_t *at)
     return *at;
 }
 
-void model_write(volatile uint32_t *at, uint32_t value)
+void write_register(volatile uint32_t *at, uint32_t value)
 {
 #ifdef STM32_MODEL_SR
     volatile uint32_t *const to_send = &model_usart.DR;

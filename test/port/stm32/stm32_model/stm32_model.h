@@ -129,9 +129,9 @@ void model_set(volatile uint32_t *reg, uint32_t bits);
 void model_unset(volatile uint32_t *reg, uint32_t bits);
 uint32_t model_dma_left(void);
 
-/* Access one of these registers by its address. */
-uint32_t model_read(const volatile uint32_t *at);
-void model_write(volatile uint32_t *at, uint32_t value);
+/* Access one of these registers by its address, for the port that does without the HAL. */
+uint32_t read_register(const volatile uint32_t *at);
+void write_register(volatile uint32_t *at, uint32_t value);
 
 /* Accesses something else: time passes. */
 void model_step(void);

@@ -235,13 +235,18 @@ void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
 
 /* ----------------------------------------------------------------------------- starting, ending */
 
-static void end_reception(UART_HandleTypeDef *uart)
+static void disable_interrupts(const UART_HandleTypeDef *uart)
 {
     model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
     model_unset(&model_usart.CR3, MODEL_CR3_EIE);
     if (uart->ReceptionType == TO_IDLE) {
         model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
     }
+}
+
+static void end_reception(UART_HandleTypeDef *uart)
+{
+    disable_interrupts(uart);
     uart->RxState = HAL_UART_STATE_READY;
     uart->ReceptionType = HAL_UART_RECEPTION_STANDARD;
 }
@@ -328,11 +333,7 @@ RECEPTION(HAL_UARTEx_ReceiveToIdle_DMA, TO_IDLE, await_idle(huart, start_dma(hua
 
 HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart)
 {
-    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
-    model_unset(&model_usart.CR3, MODEL_CR3_EIE);
-    if (huart->ReceptionType == TO_IDLE) {
-        model_unset(&model_usart.CR1, MODEL_CR1_IDLEIE);
-    }
+    disable_interrupts(huart);
 #ifndef STM32_MODEL_NO_DMA
     if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
         model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
@@ -364,8 +365,7 @@ static void receive_byte(UART_HandleTypeDef *uart)
     if (uart->RxXferCount > 0) {
         return;
     }
-    model_unset(&model_usart.CR1, MODEL_CR1_RXNEIE | MODEL_CR1_PEIE);
-    model_unset(&model_usart.CR3, MODEL_CR3_EIE);
+    disable_interrupts(uart);
     uart->RxState = HAL_UART_STATE_READY;
     HAL_UART_RxCpltCallback(uart);
 }
