@@ -31,8 +31,9 @@ enum {
 /* Fields that have not come keep their values. */
 static void trust_current(tmini_ct_t *ct)
 {
-    for (unsigned i = 0; i < ct->fields; i++) {
-        ct->trusted[i] = ct->current[i];
+    while (ct->fields > 0) {
+        ct->fields--;
+        ct->trusted[ct->fields] = ct->current[ct->fields];
     }
     ct->known |= ((1u << ct->packets) - 1) & KNOWN_MASK;
 }

@@ -46,15 +46,16 @@ void tmini_recovery_back_off(tmini_t *lidar, int result)
     tmini_recovery_t *const recovery = &lidar->recovery;
     const uint16_t max_ms = lidar->link.timing->back_off_max_ms;
     const uint32_t doubled_ms = 2u * (uint32_t)recovery->pause_ms;
-    const bool is_asking =
-        tmini_recovery_is_mute(lidar) && result == TMINI_ERROR_TIMEOUT && max_ms > 0;
-    if (recovery->wishes != BIT(TMINI_EVENT_STARTED) || is_asking) {
+    if (recovery->wishes != BIT(TMINI_EVENT_STARTED) ||
+        (result == TMINI_ERROR_TIMEOUT && tmini_recovery_is_mute(lidar) && max_ms > 0)) {
         tmini_recovery_go_on(lidar, TMINI_EVENT_NONE);
         return;
     }
     if (result != TMINI_ERROR_WRITE) { /* Otherwise the lidar has heard nothing. */
-        recovery->attempts =
-            (uint8_t)(recovery->attempts < REBOOT_AFTER ? recovery->attempts + 1 : 1);
+        if (recovery->attempts >= REBOOT_AFTER) {
+            recovery->attempts = 0;
+        }
+        recovery->attempts++;
     }
     recovery->pause_ms = (uint16_t)(doubled_ms < max_ms ? doubled_ms : max_ms);
     tmini_command_wait(lidar, lidar->is_listen_only ? TMINI_PHASE_LISTENING : TMINI_PHASE_PAUSING,
