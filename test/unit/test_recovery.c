@@ -10,6 +10,8 @@
 static const tale_phrase_t phrases[] = {
     {"fails", "<600 >60 +2000 !NONE"},
     {"fails-with-reboot", "<600 >40 +1000 >0D <600 >0D <600 >60 +2000 !NONE"},
+    {"attempt", ">65 +50 >0D fails"},
+    {"reboot-first", ">65 +50 >0D fails-with-reboot"},
     {"mute", "30( >0D +250 ) >65 +50"},
     {"lost-again", "mute >60 <S !RECOVERED +1000 !LOST"},
     {"noise", "14( ~40 <junk )"},
@@ -71,6 +73,10 @@ static const row_t tales[] IN_FLASH = {
         "!LOST >65"),
     ROW(the_first_pause_is_no_longer_than_the_longest,
         "backoff:400 lost >65 +50 >0D fails +400 >65"),
+    ROW(the_longest_pause_may_be_65_s,
+        "backoff:65535 lost attempt +500 attempt +1000 attempt +2000 reboot-first +4000 "
+        "reboot-first +8000 reboot-first +16000 reboot-first +32000 reboot-first +64000 "
+        "reboot-first +65535 >65"),
     ROW(a_port_that_fails_makes_the_attempt_fail, "lost takes:-1 !NONE !NONE ~500 takes:2 >65"),
     /* The lidar has heard nothing. */
     ROW(attempts_that_the_port_fails_cause_no_reboot,
@@ -108,7 +114,7 @@ static const row_t tales[] IN_FLASH = {
         "+50 >0D <99 >65 +50 >60 <scan <S !FAILED stop >65 +50 !STOPPED"),
     /* ---- Without recovery ---- */
     ROW(without_recovery_a_loss_is_reported_and_nothing_sent,
-        "off lost +60000 <P @RECOVERING <S !RECOVERED @SCANNING"),
+        "off lost +70000 <P @RECOVERING <S !RECOVERED @SCANNING"),
     ROW(without_recovery_a_start_after_a_loss_starts,
         "off lost start @STARTING >65 +50 >0D <600 >60 <scan <S !STARTED"),
     ROW(without_recovery_a_new_wish_after_a_loss_waits,

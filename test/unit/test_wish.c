@@ -155,8 +155,9 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_listener_that_hears_nothing_for_a_second_has_lost_its_lidar,
         "listen start <S !STARTED +1000 !LOST @RECOVERING +60000 <P !NONE <S !RECOVERED"),
     ROW(the_stop_of_a_listener_is_told_by_the_next_poll, "listen !NONE stop !STOPPED"),
-    ROW(a_listener_stops_at_once, "listen start <P !STARTED stop !STOPPED @UNKNOWN <P <S / listen "
-                                  "start stop !STOPPED !FAILED ?ABORTED"),
+    ROW(a_listener_stops_at_once,
+        "listen start <P !STARTED stop !STOPPED @UNKNOWN <P <S +500 <P !NONE / listen "
+        "start stop !STOPPED !FAILED ?ABORTED"),
     ROW(a_listener_sends_nothing, "listen info=LISTEN_ONLY health=LISTEN_ONLY "
                                   "frequency=LISTEN_ONLY reboot=LISTEN_ONLY set:700=LISTEN_ONLY"),
     /* ---- The configuration ---- */
