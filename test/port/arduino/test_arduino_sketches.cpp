@@ -103,7 +103,8 @@ TEST(scan_prints_the_model_and_every_second_the_nearest_distance)
     TEST_ASSERT_EQUAL_STRING(expected.c_str(), line.c_str());
 }
 
-TEST(scan_something_near_in_front_stops_the_robot)
+/* Something is near, then the lidar is faulty, then it is unplugged. */
+TEST(scan_stops_the_robot_only_while_it_must)
 {
     unit->placeObstacle(350);
     run_for(1500);
@@ -111,10 +112,6 @@ TEST(scan_something_near_in_front_stops_the_robot)
     sim_clear_obstacles(&unit->sim);
     run_for(1500);
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
-}
-
-TEST(scan_a_faulty_lidar_stops_the_robot_whatever_it_measures)
-{
     sim_set_health(&unit->sim, SIM_HEALTH_PD);
     run_for(1500);
     TEST_ASSERT_TRUE(has_printed("lidar faults 8\r\n"));
@@ -122,10 +119,6 @@ TEST(scan_a_faulty_lidar_stops_the_robot_whatever_it_measures)
     sim_set_health(&unit->sim, 0);
     run_for(1500);
     TEST_ASSERT_FALSE(next_line().find("STOP") != std::string::npos);
-}
-
-TEST(scan_an_unplugged_lidar_stops_the_robot)
-{
     unit->isPlugged = false;
     run_for(600);
     TEST_ASSERT_TRUE(next_line().find(" complete, blind: STOP\r\n") != std::string::npos);
@@ -147,31 +140,29 @@ TEST(obstacle_stop_stops_until_it_has_seen_that_the_way_is_free)
     TEST_ASSERT_UINT_WITHIN(20, 1000, ObstacleStop::lidar.scan().frequency_chz);
 }
 
+/* Obstacles, and whether they stop the robot. The lidar hangs upside down: its 50 degrees are at the
+ * robot's left. */
+static const struct {
+    uint16_t distance_mm;
+    uint16_t degrees;
+    uint8_t pin;
+} obstacles[] = {{250, 0, HIGH}, {250, 50, LOW}, {170, 30, HIGH}};
+
 /* Three whole scans make the field free again, at 10 Hz. */
-TEST(obstacle_stop_something_near_in_front_stops_the_robot)
+TEST(obstacle_stop_something_in_the_box_stops_the_robot_and_nothing_beside_it)
 {
-    unit->placeObstacle(250);
-    run_for(300);
-    TEST_ASSERT_EQUAL_INT(HIGH, stop_pin());
-    sim_clear_obstacles(&unit->sim);
-    run_for(500);
-    TEST_ASSERT_EQUAL_INT(LOW, stop_pin());
+    for (const auto &obstacle : obstacles) {
+        unit->placeObstacle(obstacle.distance_mm, obstacle.degrees * 64);
+        run_for(300);
+        TEST_ASSERT_EQUAL_INT(obstacle.pin, stop_pin());
+        sim_clear_obstacles(&unit->sim);
+        run_for(500);
+        TEST_ASSERT_EQUAL_INT(LOW, stop_pin());
+    }
 }
 
-/* The lidar hangs upside down: its 50 degrees are at the robot's left. */
-TEST(obstacle_stop_an_obstacle_at_the_side_does_not)
-{
-    unit->placeObstacle(250, 50 * 64);
-    run_for(300);
-    TEST_ASSERT_EQUAL_INT(LOW, stop_pin());
-    unit->placeObstacle(170, 30 * 64);
-    run_for(300);
-    TEST_ASSERT_EQUAL_INT(HIGH, stop_pin());
-    sim_clear_obstacles(&unit->sim);
-    run_for(500);
-}
-
-TEST(obstacle_stop_the_mast_is_ignored)
+/* At the end it is unplugged: it stops. */
+TEST(obstacle_stop_ignores_the_mast_but_not_a_lost_lidar)
 {
     unit->placeObstacle(150, 180 * 64);
     run_for(200);
@@ -186,11 +177,6 @@ TEST(obstacle_stop_the_mast_is_ignored)
         }
     }
     TEST_ASSERT_TRUE(points > 300);
-    sim_clear_obstacles(&unit->sim);
-}
-
-TEST(obstacle_stop_an_unplugged_lidar_stops_the_robot)
-{
     unit->isPlugged = false;
     run_for(500);
     TEST_ASSERT_EQUAL_INT(HIGH, stop_pin());
