@@ -114,7 +114,7 @@ static const row_t tales[] IN_FLASH = {
         "+50 >0D <99 >65 +50 >60 <scan <S !FAILED stop >65 +50 !STOPPED"),
     /* ---- Without recovery ---- */
     ROW(without_recovery_a_loss_is_reported_and_nothing_sent,
-        "off lost +70000 <P @RECOVERING <S !RECOVERED @SCANNING"),
+        "off lost +70000 +1000 <P @RECOVERING <S !RECOVERED @SCANNING"),
     ROW(without_recovery_a_start_after_a_loss_starts,
         "off lost start @STARTING >65 +50 >0D <600 >60 <scan <S !STARTED"),
     ROW(without_recovery_a_new_wish_after_a_loss_waits,
