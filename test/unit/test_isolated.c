@@ -153,9 +153,11 @@ void test_the_third_point_away_is_no_neighbour(void)
 void test_a_scan_may_have_more_than_256_points(void)
 {
     for (uint16_t i = 0; i < 300; i++) {
-        add(i == 298 ? 5000 : 1000);
+        add(i == 294 || i == 295 ? 500 : i == 298 ? 5000 : 1000);
     }
     tmini_isolated_step(NULL, &scan);
+    has(294, 500); /* Its only neighbour comes after it. */
+    has(295, 500);
     has(297, 1000);
     has(298, 0);
     has(299, 1000);

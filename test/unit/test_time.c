@@ -101,9 +101,9 @@ static const row_t rows[] IN_FLASH = {
     ROW(an_early_point_less_than_4_degrees_before_the_first_is_not_a_turn_later, /* Jitter. */
         "angles:0,356d,357d,358d @1:98888 angles:0,356d+1,357d,358d @1:0"),
     ROW(a_late_point_less_than_4_degrees_beyond_the_circle_is_a_turn_later,
-        "angles:0,1d,8d,4d-1 @2:2222 @3:101106"),
+        "angles:0,1d,8d,4d-1 @2:2222 @3:101106 angles:0,1d,8d,4d @3:1111"),
     ROW(the_third_of_three_points_may_be_a_turn_later, /* The second is 8 degrees away. */
-        "angles:10,90d,16,0 @2:100026 angles:0,352d,1d,0 @2:100277"),
+        "angles:10,90d,16,0 @2:100026 angles:0,352d,1d,0 @2:100277 angles:0,353d,1d,0 @2:277"),
     ROW(the_late_points_of_a_part_of_a_turn_are_no_turn_later,
         "angles:0,20d,40d,80d incomplete @2:11111 @3:22222"),
     ROW(points_of_a_short_scan_are_not_a_turn_later, "angles:0,24,24,24 @1:104 @3:104"),
