@@ -121,6 +121,15 @@ static const row_t tales[] IN_FLASH = {
         "wish:1000 idle start >0D no-answer turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D "
         "no-answer turns:34:60 again turns:70:60 again turns:142:60 again turns:253:60 again "
         "turns:253:60 again"),
+    ROW(a_fault_ends_also_while_it_is_unknown_what_is_set,
+        "wish:1000 idle start >0D no-answer turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D "
+        "no-answer turns:28:100 <turn:100 !FAULTS !SCAN faults:0"),
+    ROW(another_wish_is_tried_as_often_as_the_first,
+        "wish:1000 idle start >0D no-answer turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65 +50 >0D "
+        "no-answer set:900 !FAULTS turns:3:60 <turn:60 !SCAN !PAUSED >65 +50 >0D no-answer "
+        "turns:16:60 <turn:60 !FAULTS !SCAN !PAUSED >65"),
+    ROW(a_frequency_of_7_68_hz_is_known, /* 0x300. */
+        "no-scans wish:770 idle start >0D <768 !FREQUENCY >60 <scan <S !STARTED turns:60:77"),
     ROW(what_is_not_known_to_be_set_is_asked_again_although_it_turns_well,
         "wish:610 attempts:1 idle start >0D <600 +50 >09 3( +2000 >0D <600 +50 >09 ) +2000 >65 +50 "
         ">60 <scan <S !STARTED !FAILED #0 turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 "
