@@ -57,7 +57,7 @@ static tmini_status_t start_blocks(uint8_t *block, size_t size)
     return tmini_stm32_hal_start_blocks(&port, &lidar, block, size);
 }
 
-void test_blocks_of_a_wrong_size_are_refused(void)
+void test_blocks_of_a_wrong_size_or_beside_a_buffer_for_dma_are_refused(void)
 {
     play_begin(BY_BLOCKS);
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(NULL, 256));
@@ -65,11 +65,7 @@ void test_blocks_of_a_wrong_size_are_refused(void)
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 62));
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 255));
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 65536));
-}
-
-void test_blocks_are_refused_for_a_buffer_announced_as_dmas_target(void)
-{
-    play_begin(BY_DMA);
+    play_begin(BY_DMA); /* The lidar's own buffer is announced as DMA's target. */
     TEST_ASSERT_EQUAL(TMINI_ERROR_ARGUMENT, start_blocks(hal_rig_block, 256));
 }
 
@@ -89,7 +85,7 @@ static const row_t scenes[] IN_FLASH = {
     ROW(a_dma_that_is_suspended_is_started_again, /* HAL_UART_DMAPause() in a newer HAL. */
         "DMA blocks: P:30 run suspend ~20000 poll restarts:1 P:100 run packets:130 restarts:1"),
 #endif
-    ROW(a_dma_that_fails_is_started_again_by_the_poll, /* Not in the interrupt: hal_rig.c. */
+    ROW(a_dma_that_fails_is_started_again_by_the_poll, /* Not in the interrupt: see HAL_UART_ErrorCallback(). */
         "DMA blocks: P:30 run TE ~5000 others:1 poll P:100 run packets:130"),
     /* The port checks reception when the library asks for the time. The first poll after a command
      * asks only once: it restarts reception, and a later poll hands over bytes. */
