@@ -8,7 +8,7 @@
 
 #include "esp_err.h"
 
-typedef enum { ESP_PM_CPU_FREQ_MAX, ESP_PM_APB_FREQ_MAX, ESP_PM_NO_LIGHT_SLEEP } esp_pm_lock_type_t;
+typedef enum { ESP_PM_APB_FREQ_MAX, ESP_PM_NO_LIGHT_SLEEP } esp_pm_lock_type_t;
 
 typedef struct esp_pm_lock *esp_pm_lock_handle_t;
 

@@ -6,7 +6,6 @@
 #ifndef DRIVER_UART_H
 #define DRIVER_UART_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -38,7 +37,6 @@ typedef struct {
     uart_parity_t parity;
     uart_stop_bits_t stop_bits;
     uart_hw_flowcontrol_t flow_ctrl;
-    uint8_t rx_flow_ctrl_thresh;
     uart_sclk_t source_clk;
 } uart_config_t;
 
@@ -50,14 +48,12 @@ typedef enum {
     UART_FRAME_ERR,
     UART_PARITY_ERR,
     UART_DATA_BREAK,
-    UART_PATTERN_DET,
-    UART_EVENT_MAX
+    UART_PATTERN_DET
 } uart_event_type_t;
 
 typedef struct {
     uart_event_type_t type;
     size_t size;
-    bool timeout_flag;
 } uart_event_t;
 
 esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffer_size,
