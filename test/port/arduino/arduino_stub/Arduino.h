@@ -127,6 +127,15 @@ class HardwareSerial : public Stream
             lost++;
         }
     }
+    /* On an ESP32, closing also releases the pins. */
+    void end()
+    {
+        vain_ends += is_open ? 0 : 1;
+        is_open = false;
+#if defined(ESP32)
+        rx_pin = tx_pin = -1;
+#endif
+    }
 #if defined(ESP32)
     void begin(unsigned long baud, uint32_t config, int8_t rx, int8_t tx)
     {
@@ -134,14 +143,6 @@ class HardwareSerial : public Stream
         line = config;
         rx_pin = rx;
         tx_pin = tx;
-    }
-    /* Closing also releases the pins. */
-    void end()
-    {
-        vain_ends += is_open ? 0 : 1;
-        is_open = false;
-        rx_pin = -1;
-        tx_pin = -1;
     }
     operator bool() const
     {
@@ -189,10 +190,6 @@ class SerialUART : public HardwareSerial
     {
         rx_size = 32;
     }
-    void end()
-    {
-        is_open = false;
-    }
     bool setFIFOSize(size_t size)
     {
         rx_size = is_open ? rx_size : size;
@@ -219,10 +216,6 @@ class HardwareSerialIMXRT : public HardwareSerial
     HardwareSerialIMXRT()
     {
         rx_size = 63;
-    }
-    void end()
-    {
-        is_open = false;
     }
     void addMemoryForRead(void *buffer, size_t length)
     {
