@@ -15,7 +15,7 @@ tmini_status_t tmini_ring_init(tmini_ring_t *ring, uint8_t *memory, size_t size,
         return TMINI_ERROR_ARGUMENT;
     }
     ring->memory = memory;
-    ring->window = dma ? size / 2 : size;
+    ring->window = size >> (dma ? 1 : 0);
     tmini_store(&ring->size, size); /* Last: a byte that comes before this is refused. */
     return TMINI_OK;
 }
@@ -48,7 +48,7 @@ void tmini_ring_put_at_stop(tmini_ring_t *ring, uint8_t byte)
 {
     const size_t head = ring->head;
     const size_t room = room_ahead(ring, head);
-    if (room == 0 || room > ring->size) {
+    if (room - 1 >= ring->size) { /* No room (0 - 1 wraps), or a closed ring. */
         refuse(ring, room, 1);
         return;
     }
