@@ -412,7 +412,6 @@ static tmini_packet_meaning_t on_first_packet(tmini_t *lidar, tmini_sign_t sign)
 
 tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign)
 {
-    const bool is_start = lidar->command.operation == TMINI_EVENT_STARTED;
     switch (lidar->command.phase) {
     case TMINI_PHASE_WATCHING:
     case TMINI_PHASE_IDLE: /* At once, it may be of the tail, or held by a layer below. */
@@ -421,13 +420,12 @@ tmini_packet_meaning_t tmini_command_packet(tmini_t *lidar, tmini_sign_t sign)
                    : TMINI_PACKET_IGNORED;
     case TMINI_PHASE_ASKING:
     case TMINI_PHASE_UNCHANGED:
-        return on_packet_while_idle(lidar);
     case TMINI_PHASE_AWAITING:
-        return is_start ? on_first_packet(lidar, sign) : on_packet_while_idle(lidar);
     case TMINI_PHASE_SPINNING_UP:
     case TMINI_PHASE_TURNING:
     case TMINI_PHASE_STANDING:
-        return on_first_packet(lidar, sign);
+        return lidar->command.operation == TMINI_EVENT_STARTED ? on_first_packet(lidar, sign)
+                                                               : on_packet_while_idle(lidar);
     case TMINI_PHASE_PAUSING:
     case TMINI_PHASE_LISTENING:
         return sign == TMINI_SIGN_SCANS ? TMINI_PACKET_FIRST : TMINI_PACKET_IGNORED;
@@ -456,7 +454,7 @@ void tmini_command_end(tmini_t *lidar, int result)
     if (command->operation < TMINI_EVENT_STOPPED) { /* The lidar may be scanning. */
         phase = TMINI_PHASE_NONE;
     } else if (result == TMINI_OK && !command->is_repeated &&
-               tmini_ring_head(&lidar->ring) == tmini_parser_position(&lidar->decoder.parser)) {
+               tmini_ring_head(&lidar->ring) == tmini_position(lidar)) {
         phase = TMINI_PHASE_IDLE;
     }
     enter(lidar, phase, 0);

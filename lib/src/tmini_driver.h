@@ -39,6 +39,12 @@ static inline bool tmini_has_elapsed(const tmini_t *lidar, uint32_t since_ms, ui
     return lidar->line.now_ms - since_ms >= wait_ms;
 }
 
+/* The place in the stream where parsing continues: the byte after the frame delivered last. */
+static inline size_t tmini_position(const tmini_t *lidar)
+{
+    return tmini_ring_tail(&lidar->ring) + tmini_parser_frame(&lidar->decoder.parser)->size;
+}
+
 /* ------------------------------------------------------------------------------------ tmini.c */
 
 /* Withdraws the wish for this query. Used by the blocking helpers. */

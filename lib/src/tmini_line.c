@@ -173,8 +173,8 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning)
 
 uint32_t tmini_line_arrival_ms(const tmini_t *lidar)
 {
-    const size_t position = tmini_parser_position(&lidar->decoder.parser);
-    const size_t after = tmini_ring_distance(position, lidar->line.received) + lidar->line.held;
+    const size_t unparsed = tmini_ring_distance(tmini_position(lidar), lidar->line.received);
+    const size_t after = unparsed + lidar->line.held;
     return lidar->line.heard_ms - transit_ms(after);
 }
 

@@ -143,13 +143,6 @@ static inline bool tmini_parser_has_work(const tmini_parser_t *parser)
     return tmini_ring_ahead(parser->frame.ring) >= parser->need;
 }
 
-/** The place in the stream where parsing continues: the byte after the frame delivered last.
- * Compare places with tmini_ring_distance(). */
-static inline size_t tmini_parser_position(const tmini_parser_t *parser)
-{
-    return tmini_ring_tail(parser->frame.ring) + parser->frame.size;
-}
-
 /** Copies the counters. */
 void tmini_parser_counters(const tmini_parser_t *parser, tmini_parser_counters_t *counters);
 
