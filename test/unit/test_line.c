@@ -208,7 +208,7 @@ static const row_t rows[] IN_FLASH = {
     /* ---- A program that is behind ---- */
     ROW(a_pause_between_polls_is_no_work, "2( look:200:13 behind:0 )"),
     ROW(a_pause_counts_as_work_if_the_port_still_holds_bytes,
-        "held:100 look:151:13 behind:1 10-hz held:100 look:65536:13 behind:1"),
+        "held:14 look:151:13 behind:1 10-hz held:100 look:65536:13 behind:1"),
     ROW(a_program_is_behind_after_more_than_150_ms_of_work,
         "look:1000:13 unsettled look:149:13 behind:0 look:1:13 behind:1 look:65536:13 behind:1 "
         "settled look:1:13 behind:0"),
