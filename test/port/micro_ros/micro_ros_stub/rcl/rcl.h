@@ -18,7 +18,6 @@ typedef int32_t rmw_ret_t;
 #define RCL_RET_OK 0
 #define RCL_RET_ERROR 1
 #define RMW_RET_OK 0
-#define RMW_RET_ERROR 1
 
 typedef struct {
     void *state;
