@@ -434,6 +434,7 @@ static void take_packet(tmini_t *lidar)
 {
     const uint32_t came_ms = arrival_ms(lidar);
     if (!note_scanning(lidar)) {
+        (void)tmini_line_is_doubtful(lidar, came_ms); /* The end of a doubt must not be missed. */
         return; /* A packet of the tail after a stop, or of a lidar that is not to scan. */
     }
     const bool is_doubtful = tmini_line_is_doubtful(lidar, came_ms);

@@ -79,7 +79,7 @@ bool tmini_line_look(tmini_t *lidar, bool is_scanning);
 uint32_t tmini_line_arrival_ms(const tmini_t *lidar);
 
 /* True if packets may be missing before the packet found last, which came at `came_ms`: the line
- * has paused, or the packet is late. Call it once for each packet that is not ignored. */
+ * has paused, or the packet is late. Call it once for each packet. */
 bool tmini_line_is_doubtful(tmini_t *lidar, uint32_t came_ms);
 
 /* ---------------------------------------------------------------------------- tmini_command.c */

@@ -90,6 +90,10 @@ static const row_t tales[] IN_FLASH = {
         "ring packets pause:30 idle clock:65546 start >0D <600 >60 +1000 ~29 <scan " TWO
         "!STARTED doubtful:1:2 / ring packets pause:30 idle clock:65546 start >0D <600 >60 +1000 "
         "~30 <scan " TWO "!STARTED doubtful:2:2"),
+    ROW(ignored_packets_end_a_doubt, /* Else it would seem to lie ahead again 2^29 bytes later. */
+        "ring packets pause:30 listen start <P !STARTED !PACKET stop !STOPPED ~45 2( <P !NONE ) "
+        "start ~2 <P !STARTED doubtful:0:1 / ring packets pause:30 listen start <P !STARTED "
+        "!PACKET stop !STOPPED ~45 <P !NONE start ~2 <P !STARTED doubtful:1:1"),
     /* ---- Bytes that a layer below has held back ---- */
     ROW(after_a_pause_between_polls_the_first_packet_after_it_is_doubtful_too,
         STREAMS "~50 " TWO "doubtful:2:2 " THEN_TWO "doubtful:1:2 " THEN_TWO "doubtful:0:2"),
