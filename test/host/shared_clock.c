@@ -20,13 +20,15 @@
 #include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
-#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -55,7 +57,8 @@ typedef struct {
 
 static clock_file_t *shared;
 static int lock_fd;
-static int wake_fd; /* Others wake this program by SIGURG, which does no harm elsewhere. */
+static int wake_fd;    /* Others wake this program here. */
+static char name[100]; /* Of the file: part of the names of all `wake_fd`. */
 
 /* The real time in which nothing happens after which poll() gives up with ETIME; 0: never. It also
  * gives up after LONGEST_NS of the clock's time. For the test itself. */
@@ -162,6 +165,23 @@ static program_t *place_of(pid_t pid)
     return place;
 }
 
+/* The address of a program's `wake_fd`: a name that needs no file. */
+static struct sockaddr_un wake_address(pid_t pid, socklen_t *length)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    *length = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1) +
+              (socklen_t)snprintf(address.sun_path + 1, sizeof address.sun_path - 1, "%s.%d", name,
+                                  (int)pid);
+    return address;
+}
+
+static void wake(const program_t *program)
+{
+    socklen_t length;
+    const struct sockaddr_un address = wake_address(program->pid, &length);
+    (void)sendto(wake_fd, "", 1, MSG_DONTWAIT, (const struct sockaddr *)&address, length);
+}
+
 static bool has_looked(const program_t *program)
 {
     return program->is_waiting && program->seen == shared->events;
@@ -195,7 +215,7 @@ static bool is_any_awaited(pid_t own, bool is_late)
     }
     for (int i = 0; i < PROGRAMS_MAX && !works; i++) {
         if (is_one[i] && shared->programs[i].pid != own) {
-            (void)kill(shared->programs[i].pid, SIGURG);
+            wake(&shared->programs[i]);
         }
     }
     return is_any;
@@ -216,7 +236,7 @@ static void jump(pid_t own)
     }
     for (const program_t *one = shared->programs; one < end; one++) {
         if (one->pid != 0 && one->pid != own && one->until_ns <= now_ns()) {
-            (void)kill(one->pid, SIGURG);
+            wake(one);
         }
     }
 }
@@ -249,16 +269,15 @@ void shared_clock_expect(pid_t pid)
     unlock();
 }
 
-static int open_wake(void)
+static int open_wake(const char *path)
 {
-    sigset_t wakes;
-    (void)sigemptyset(&wakes);
-    (void)sigaddset(&wakes, SIGURG);
-    (void)sigprocmask(SIG_BLOCK, &wakes, NULL);
-    const int fd = signalfd(-1, &wakes, SFD_CLOEXEC | SFD_NONBLOCK);
+    (void)snprintf(name, sizeof name, "%.90s", path);
+    socklen_t length;
+    const struct sockaddr_un address = wake_address(getpid(), &length);
+    const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     const int high_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
     (void)close(fd);
-    return high_fd;
+    return bind(high_fd, (const struct sockaddr *)&address, length) == 0 ? high_fd : -1;
 }
 
 /* Stops a process outside of the functions that lock the file. */
@@ -288,7 +307,7 @@ void shared_clock_open(const char *path)
         return;
     }
     lock_fd = fcntl(fd, F_DUPFD_CLOEXEC, HIGH_FD);
-    wake_fd = open_wake();
+    wake_fd = open_wake(path);
     void *const memory = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     shared = memory != MAP_FAILED && lock_fd >= 0 && wake_fd >= 0 ? memory : NULL;
     (void)close(fd);
@@ -310,8 +329,9 @@ static int wait_or_be_woken(struct pollfd *fds, nfds_t count, long wait_ns, bool
     const int ready = ppoll(all, count + 1, &wait, NULL);
     *is_woken = ready > 0 && all[count].revents != 0;
     if (*is_woken) {
-        struct signalfd_siginfo wake;
-        (void)!read(wake_fd, &wake, sizeof wake);
+        char bytes[1];
+        while (recv(wake_fd, bytes, sizeof bytes, MSG_DONTWAIT) > 0) {
+        }
     }
     for (nfds_t i = 0; i < count && ready > 0; i++) {
         fds[i].revents = all[i].revents;
