@@ -25,9 +25,7 @@ static uint32_t now_ms(void)
 
 static void await_info(asked_t *asked)
 {
-    tmini_reply_header_t reply;
-    (void)tmini_reply_header(TMINI_COMMAND_GET_INFO, &reply);
-    (void)tmini_parser_await(&asked->decoder.parser, &reply);
+    (void)tmini_parser_await(&asked->decoder.parser, tmini_reply_header(TMINI_COMMAND_GET_INFO));
 }
 
 static void take_bytes(void *context, const uint8_t *bytes, size_t count)

@@ -91,10 +91,9 @@ static int send_rest(tmini_t *lidar)
  * `phase`. */
 static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
 {
-    tmini_reply_header_t reply;
-    const bool has_reply = tmini_reply_header((tmini_command_code_t)code, &reply);
     send(lidar, (tmini_command_code_t)code);
-    (void)tmini_parser_await(&lidar->decoder.parser, has_reply ? &reply : NULL);
+    (void)tmini_parser_await(&lidar->decoder.parser,
+                             tmini_reply_header((tmini_command_code_t)code));
     enter(lidar, phase, timeout_ms);
     return TMINI_UNDER_WAY;
 }

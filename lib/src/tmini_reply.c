@@ -3,29 +3,34 @@
 
 #include "tmini/parts/tmini_reply.h"
 
-/* Most commands have the frequency as their reply: its query, and each of its steps (sections 3 and
- * 4). */
-bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header)
+/* How the replies begin (sections 3 and 4). */
+enum { FREQUENCY_REPLY, PACKETS_REPLY, INFO_REPLY, HEALTH_REPLY };
+static const tmini_reply_header_t headers[] = {
+    [FREQUENCY_REPLY] = {.type = 0x04,
+                         .mode = TMINI_REPLY_MODE_SINGLE,
+                         .length = TMINI_FREQUENCY_SIZE},
+    [PACKETS_REPLY] = {.type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS, .length = 0},
+    [INFO_REPLY] = {.type = 0x04, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_INFO_SIZE},
+    [HEALTH_REPLY] = {.type = 0x06, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_HEALTH_SIZE},
+};
+
+/* Most commands have the frequency as their reply: its query, and each of its steps. */
+const tmini_reply_header_t *tmini_reply_header(tmini_command_code_t command)
 {
+    size_t reply = FREQUENCY_REPLY;
     if (command == TMINI_COMMAND_STOP || command == TMINI_COMMAND_REBOOT) {
-        return false;
+        return NULL;
     }
-    header->type = 0x04;
-    header->mode = TMINI_REPLY_MODE_SINGLE;
-    header->length = TMINI_FREQUENCY_SIZE;
     if (command == TMINI_COMMAND_START) {
-        header->type = 0x81;
-        header->mode = TMINI_REPLY_MODE_CONTINUOUS;
-        header->length = 0;
+        reply = PACKETS_REPLY;
     }
     if (command == TMINI_COMMAND_GET_INFO) {
-        header->length = TMINI_INFO_SIZE;
+        reply = INFO_REPLY;
     }
     if (command == TMINI_COMMAND_GET_HEALTH) {
-        header->type = 0x06;
-        header->length = TMINI_HEALTH_SIZE;
+        reply = HEALTH_REPLY;
     }
-    return true;
+    return &headers[reply];
 }
 
 typedef char information_is_sent_as_it_is_kept[sizeof(tmini_info_t) == TMINI_INFO_SIZE ? 1 : -1];

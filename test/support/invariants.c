@@ -180,11 +180,10 @@ static uint8_t code_of(uint8_t operation)
 static bool awaits_its_reply(const tmini_t *lidar)
 {
     const tmini_reply_header_t *const awaited = &lidar->decoder.parser.awaited;
-    tmini_reply_header_t reply;
-    return lidar->decoder.parser.awaiting &&
-           tmini_reply_header((tmini_command_code_t)lidar->command.code, &reply) &&
-           awaited->type == reply.type && awaited->mode == reply.mode &&
-           awaited->length == reply.length;
+    const tmini_reply_header_t *const reply =
+        tmini_reply_header((tmini_command_code_t)lidar->command.code);
+    return lidar->decoder.parser.awaiting && reply != NULL && awaited->type == reply->type &&
+           awaited->mode == reply->mode && awaited->length == reply->length;
 }
 
 static bool is_asking(const tmini_command_t *command)

@@ -40,9 +40,9 @@ typedef enum {
 #define TMINI_HEALTH_SIZE 3u
 /** Bytes of a scan frequency reply's content (section 4). */
 #define TMINI_FREQUENCY_SIZE 4u
-/** Writes to `header` how the reply to `command` begins. Returns false for the commands that have
- * no reply: stop and reboot. */
-bool tmini_reply_header(tmini_command_code_t command, tmini_reply_header_t *header);
+/** Returns how the reply to `command` begins, or null for the commands that have no reply: stop and
+ * reboot. */
+const tmini_reply_header_t *tmini_reply_header(tmini_command_code_t command);
 
 /** Reads the device information from a reply's 20 bytes. The firmware's minor number comes first:
  * real units send it so, although the manual says otherwise (section 9.4). */
