@@ -105,13 +105,14 @@ static void note_start(tmini_builder_t *builder, const tmini_packet_t *start)
 static int32_t begin_scan(tmini_builder_t *builder, const tmini_packet_t *first, uint32_t now_ms)
 {
     tmini_scan_t *const scan = &builder->scan;
+    const uint32_t intervals = first->count - 1u;
     scan->count = 0;
     scan->dropped = 0;
     scan->packets = 0;
     scan->complete = false;
     scan->upside_down = false;
     scan->gaps = tmini_packet_is_start(first) ? 0 : 1;
-    scan->start_ms = now_ms - ((uint32_t)(first->count - 1u) * SAMPLE_SENT_Q16_MS >> 16);
+    scan->start_ms = now_ms - (intervals * SAMPLE_SENT_Q16_MS >> 16);
     scan->checksum_errors = first->frame->checksum_errors; /* finish() subtracts this. */
     builder->late_ms = builder->next_late_ms;
     builder->open = true;

@@ -18,11 +18,11 @@ const uint8_t *tmini_frame_samples(const tmini_frame_t *frame, size_t index, siz
     if (bytes == wanted) {
         return piece;
     }
-    if (bytes >= TMINI_SAMPLE_SIZE) {
-        *count = third_of(bytes);
-        return piece;
+    if (bytes < TMINI_SAMPLE_SIZE) {
+        *count = 1;
+        tmini_ring_copy(frame->ring, TMINI_SAMPLE_OFFSET(index), joined, TMINI_SAMPLE_SIZE);
+        return joined;
     }
-    tmini_ring_copy(frame->ring, TMINI_SAMPLE_OFFSET(index), joined, TMINI_SAMPLE_SIZE);
-    *count = 1;
-    return joined;
+    *count = third_of(bytes);
+    return piece;
 }

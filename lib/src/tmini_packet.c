@@ -93,12 +93,13 @@ void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame)
     packet->count = frame->header[LSN];
     packet->gap = frame->gap;
     packet->frame = frame;
-    packet->step = 0;
+    uint32_t step = 0;
     if (packet->count > 1) {
         const uint32_t intervals = packet->count - 1u;
         const uint32_t swept = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);
-        packet->step = ((swept << STEP_BITS) + intervals - 1) / intervals;
+        step = ((swept << STEP_BITS) + intervals - 1) / intervals;
     }
+    packet->step = step;
 }
 
 bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_t *point)
@@ -115,9 +116,9 @@ bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_
 
 static void apply_filter(unsigned filter, tmini_point_t *points, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        if ((filter >> points[i].flag & 1u) != 0) {
-            points[i].distance_mm = 0;
+    for (; count > 0; count--, points++) {
+        if ((filter >> points->flag & 1u) != 0) {
+            points->distance_mm = 0;
         }
     }
 }

@@ -93,7 +93,7 @@ PROOFS = [
          "tmini_ring_discard(ring, TMINI_RING_CLOSED / 2);"),
     ring("read", "lib/src/tmini_ring.c", "memory[index++ & mask]", "memory[index++]"),
     Proof("frame_samples", ["proof_frame.c"], FRAME, 4, ANY_RING,
-          ("lib/src/tmini_frame.c", "if (bytes >= TMINI_SAMPLE_SIZE)", "if (bytes > 1)"), loops="fill_memory.0:33"),
+          ("lib/src/tmini_frame.c", "if (bytes < TMINI_SAMPLE_SIZE)", "if (bytes < 2)"), loops="fill_memory.0:33"),
     Proof("frame_content", ["proof_frame.c"], FRAME, 65, "ring of 64 bytes, all indices",
           ("lib/include/tmini/parts/tmini_frame.h", "TMINI_REPLY_HEADER_SIZE, content, count", "0, content, count")),
     parser("init", "lib/src/tmini_parser.c", "ring->window >= TMINI_REPLY_SIZE_MAX;", "true;",
