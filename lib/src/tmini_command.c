@@ -31,19 +31,12 @@
 #define LAST_CHANCE_MS 100
 #define CHANCES_MAX 3
 
-/* What is sent when the line is quiet, and has one reply. */
-static const uint8_t codes[] = {
-    [TMINI_EVENT_STARTED] = TMINI_COMMAND_START,
-    [TMINI_EVENT_INFO] = TMINI_COMMAND_GET_INFO,
-    [TMINI_EVENT_HEALTH] = TMINI_COMMAND_GET_HEALTH,
-};
-
 /* Begins a phase that lasts at most `timeout_ms`; 0: no limit. */
-static void enter(tmini_t *lidar, tmini_phase_t phase, uint16_t timeout_ms)
+static void enter(tmini_t *lidar, tmini_phase_t phase, unsigned timeout_ms)
 {
     lidar->command.phase = (uint8_t)phase;
     lidar->command.since_ms = lidar->line.now_ms;
-    lidar->command.timeout_ms = timeout_ms;
+    lidar->command.timeout_ms = (uint16_t)timeout_ms;
 }
 
 /* ------------------------------------------------------------------------------------- sending */
@@ -89,7 +82,7 @@ static int send_rest(tmini_t *lidar)
 
 /* Sends a command (the line is quiet, or it is a stop) and awaits its reply, if it has one, in
  * `phase`. */
-static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uint16_t timeout_ms)
+static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, unsigned timeout_ms)
 {
     send(lidar, (tmini_command_code_t)code);
     (void)tmini_parser_await(&lidar->decoder.parser,
@@ -99,9 +92,9 @@ static int send_and_await(tmini_t *lidar, uint8_t code, tmini_phase_t phase, uin
 }
 
 /* How long the line may take to become quiet. */
-static uint16_t quiet_timeout_ms(const tmini_t *lidar)
+static unsigned quiet_timeout_ms(const tmini_t *lidar)
 {
-    return (uint16_t)(TMINI_STOP_TIMEOUT_MS + lidar->link.timing->quiet_line_ms);
+    return TMINI_STOP_TIMEOUT_MS + lidar->link.timing->quiet_line_ms;
 }
 
 /* Stops the lidar first, which is always permitted (section 9.10). */
@@ -241,6 +234,7 @@ static int ask_again(tmini_t *lidar)
 static int on_quiet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
+    uint8_t code = TMINI_COMMAND_GET_HEALTH;
     const bool has_answered = command->phase == TMINI_PHASE_SETTLING;
     tmini_parser_skip_all(&lidar->decoder.parser);
     switch (command->operation) {
@@ -256,10 +250,16 @@ static int on_quiet(tmini_t *lidar)
                               TMINI_REBOOT_TIME_MS);
     case TMINI_EVENT_FREQUENCY:
         return has_answered ? step(lidar) : ask_again(lidar);
+    case TMINI_EVENT_STARTED:
+        code = TMINI_COMMAND_START;
+        break;
+    case TMINI_EVENT_INFO:
+        code = TMINI_COMMAND_GET_INFO;
+        break;
     default:
-        return send_and_await(lidar, codes[command->operation], TMINI_PHASE_AWAITING,
-                              lidar->link.timing->reply_timeout_ms);
+        break;
     }
+    return send_and_await(lidar, code, TMINI_PHASE_AWAITING, lidar->link.timing->reply_timeout_ms);
 }
 
 /* No packet has come in time. If the program has paused, and not just slept until now, the lidar
