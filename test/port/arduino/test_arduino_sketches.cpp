@@ -140,8 +140,8 @@ TEST(obstacle_stop_stops_until_it_has_seen_that_the_way_is_free)
     TEST_ASSERT_UINT_WITHIN(20, 1000, ObstacleStop::lidar.scan().frequency_chz);
 }
 
-/* Obstacles, and whether they stop the robot. The lidar hangs upside down: its 50 degrees are at the
- * robot's left. */
+/* Obstacles, and whether they stop the robot. The lidar hangs upside down: its 50 degrees are at
+ * the robot's left. */
 static const struct {
     uint16_t distance_mm;
     uint16_t degrees;

@@ -85,7 +85,8 @@ static const row_t scenes[] IN_FLASH = {
     ROW(a_dma_that_is_suspended_is_started_again, /* HAL_UART_DMAPause() in a newer HAL. */
         "DMA blocks: P:30 run suspend ~20000 poll restarts:1 P:100 run packets:130 restarts:1"),
 #endif
-    ROW(a_dma_that_fails_is_started_again_by_the_poll, /* Not in the interrupt: see HAL_UART_ErrorCallback(). */
+    /* Not in the interrupt: see HAL_UART_ErrorCallback(). */
+    ROW(a_dma_that_fails_is_started_again_by_the_poll,
         "DMA blocks: P:30 run TE ~5000 others:1 poll P:100 run packets:130"),
     /* The port checks reception when the library asks for the time. The first poll after a command
      * asks only once: it restarts reception, and a later poll hands over bytes. */
