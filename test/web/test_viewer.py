@@ -201,8 +201,22 @@ def test_the_points_of_the_last_seconds_are_saved(simulated):
 
 # ------------------------------------------------------------------------------------------------------- appearance
 
+def luminance(colour):
+    parts = [part / 255 for part in colour]
+    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    """The contrast ratio of the Web Content Accessibility Guidelines: 1 to 21."""
+    bright, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (bright + 0.05) / (dark + 0.05)
+
+
 PHONE = (360, 740)
 DARK, LIGHT = ((15, 26, 46), (10, 15, 31)), ((255, 255, 255), (243, 244, 246))
+WORDS = ("text ground, text page, dim ground, dim page, accent ground, nearest ground, on-accent accent, alarm ground, "
+         "alarm alarm-ground, text alarm-ground")
 
 
 @pytest.mark.parametrize("settings, grounds", [
@@ -219,6 +233,20 @@ class TestAppearance:
         assert simulated.look(ground)[0] > 0.5 * simulated.run(
             "const { width, height } = document.querySelector('#picture'); return width * (height - 80)")
         simulated.play("300 coloured")
+
+    def test_words_stand_out(self, page, grounds):
+        names = sorted(set(WORDS.replace(",", "").split()))
+        colours = dict(zip(names, page.run("""const probe = document.createElement('canvas')
+                .getContext('2d', {willReadFrequently: true});
+            const style = getComputedStyle(document.documentElement);
+            return arguments[0].map((name) => {
+                probe.fillStyle = style.getPropertyValue('--' + name);
+                probe.fillRect(0, 0, 1, 1);
+                return [...probe.getImageData(0, 0, 1, 1).data].slice(0, 3);
+            })""", names)))
+        for pair in WORDS.split(", "):
+            one, other = pair.split()
+            assert contrast(colours[one], colours[other]) >= 4.5, pair
 
 
 @pytest.mark.parametrize("settings", [{"size": PHONE}], ids=["phone"])
