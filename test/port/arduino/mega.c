@@ -145,9 +145,12 @@ static void start_lidar(port_t *port)
     sim_observe(&port->lidar, &observer);
 }
 
-static void connect(avr_t *avr, char digit)
+static bool connect(avr_t *avr, char digit)
 {
     port_t *const port = &ports[port_count];
+    if (port_count == PORTS || digit < '1' || digit > '3') {
+        return false;
+    }
     port->avr = avr;
     port->uart = find_uart(avr, digit);
     start_lidar(port);
@@ -157,6 +160,7 @@ static void connect(avr_t *avr, char digit)
                             port);
     avr_cycle_timer_register(avr, CYCLES_PER_US, pass_bytes, port);
     port_count++;
+    return true;
 }
 
 /* ---------------------------------------------------------------------------------- the console */
@@ -280,7 +284,7 @@ static void report(void)
 int main(int argc, char **argv)
 {
     elf_firmware_t firmware = {0};
-    if (argc < 4 || argc > 3 + (int)PORTS) {
+    if (argc < 4) {
         (void)fprintf(stderr, "usage: mega FIRMWARE.elf SCANS PORT...\n");
         return 2;
     }
@@ -291,7 +295,10 @@ int main(int argc, char **argv)
     }
     wanted = (unsigned)strtoul(argv[2], NULL, 10);
     for (int i = 3; i < argc; i++) {
-        connect(avr, argv[i][0]);
+        if (!connect(avr, argv[i][0])) {
+            (void)fprintf(stderr, "there is no Serial%s\n", argv[i]);
+            return 2;
+        }
     }
     run(avr);
     report();
