@@ -234,7 +234,7 @@ static int ask_again(tmini_t *lidar)
 static int on_quiet(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
-    uint8_t code = TMINI_COMMAND_GET_HEALTH;
+    uint8_t code = TMINI_COMMAND_GET_HEALTH; /* Unless the operation is another. */
     const bool has_answered = command->phase == TMINI_PHASE_SETTLING;
     tmini_parser_skip_all(&lidar->decoder.parser);
     switch (command->operation) {

@@ -117,9 +117,7 @@ static const row_t tales[] IN_FLASH = {
         "idle set:700 >0D <600 +50 >0B <700 +50 >0D <600 +50 >0B <700 +50 >0D <700 !FREQUENCY"),
     ROW(a_lidar_that_never_gets_there_fails_after_20_steps,
         "idle set:1200 >0D <600 +50 10( >0B <700 +50 >0B <600 +50 ) !FAILED ?REPLY frequency >65 "
-        "+50 >0D "
-        "<600 "
-        "+50 >0B"),
+        "+50 >0D <600 +50 >0B"),
     ROW(a_late_copy_of_the_reply_before_is_not_taken_for_a_refusal,
         "idle set:800 >0D <600 +50 >0B <600 +1000 <700 +50 >0B <800 +50 >0D <800 !FREQUENCY"),
     ROW(a_step_without_change_is_asked_about_after_the_time_for_a_reply,
