@@ -8,8 +8,10 @@
 
 #include "tmini_driver.h"
 
-/* More steps than any change between 6 and 12 Hz needs (6 of 1 Hz and 9 of 0.1 Hz). */
-#define STEPS_MAX 20
+/* No change between 6 and 12 Hz needs more than 14 steps (5 of 1 Hz and 9 of 0.1 Hz). A step in
+ * vain counts for more, so a lidar that obeys none is given up after four. */
+#define STEPS_MAX 32
+#define STEPS_IN_VAIN 7 /* What one counts for beside itself. */
 #define COARSE_STEP_CHZ 100
 
 /* A lidar that boots answers nothing, and what is sent to it is lost (section 9.16). So the first
@@ -18,7 +20,6 @@
 #define ASK_EACH_MS 250
 #define ASKS_MAX 30
 #define UNCHANGED_MS 2000 /* For another reply to a step, if replies have no limit. */
-#define ASKS_PER_STEP 8   /* What a step without an answer counts for. */
 
 /* A reply outside these limits is garbage: section 1 gives 6 to 12 Hz. */
 #define PLAUSIBLE_CHZ_MIN 100
@@ -112,20 +113,21 @@ TMINI_NOINLINE static int ask(tmini_t *lidar)
 
 /* --------------------------------------------------------------------------- how commands end */
 
-/* An attempt has failed with `error`: makes another, unless this was the last. Without an answer to
- * a step, or with one that may be a late copy, it is unknown whether the lidar obeyed, refused, or
- * lost its power: asks from the beginning. */
-static int try_again(tmini_t *lidar, int error)
+/* No reply came in time, no start packet, or the line did not become quiet: makes another attempt,
+ * unless this was the last. Without an answer to a step, or with one that may be a late copy, it is
+ * unknown whether the lidar obeyed, refused, or lost its power: asks from the beginning. */
+static int try_again(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     command->timeouts++;
     command->is_repeated = true;
     if (command->operation == TMINI_EVENT_FREQUENCY && !tmini_command_awaits_quiet(lidar)) {
-        command->asks = (uint8_t)(command->asks + ASKS_PER_STEP);
-        return command->asks < ASKS_MAX ? ask(lidar) : error;
+        command->steps = (uint8_t)(command->steps + STEPS_IN_VAIN);
+        command->asks = 0;
+        return ask(lidar);
     }
     if (command->attempts_left == 0) {
-        return error;
+        return TMINI_ERROR_TIMEOUT;
     }
     command->attempts_left--;
     return quiesce(lidar);
@@ -160,10 +162,10 @@ static int step(tmini_t *lidar)
 {
     tmini_command_t *const command = &lidar->command;
     uint8_t code = TMINI_COMMAND_GET_FREQUENCY;
+    if (command->steps >= STEPS_MAX) {
+        return TMINI_ERROR_REPLY;
+    }
     if (!tmini_command_has_frequency(lidar)) {
-        if (command->steps == STEPS_MAX) {
-            return TMINI_ERROR_REPLY;
-        }
         command->steps++;
         code = next_step(lidar);
     }
@@ -196,9 +198,6 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
     command->frequency_chz = (uint16_t)frequency_chz;
     if (command->operation == TMINI_EVENT_REBOOTED) {
         return TMINI_OK;
-    }
-    if (!command->is_repeated) {
-        command->asks = 0; /* A lidar that loses its power now gets the whole time again, once. */
     }
     const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (!is_step && !may_be_late && tmini_command_has_frequency(lidar)) {
@@ -284,8 +283,6 @@ static int on_time_out(tmini_t *lidar)
     case TMINI_PHASE_ASKING:
     case TMINI_PHASE_REBOOTING:
         return ask_again(lidar);
-    case TMINI_PHASE_UNCHANGED:
-        return try_again(lidar, TMINI_ERROR_REPLY);
     case TMINI_PHASE_STANDING: /* A blocked rotor is a fault; no attempt to start it helps. */
         return TMINI_SCANS;
     case TMINI_PHASE_PAUSING:
@@ -295,8 +292,8 @@ static int on_time_out(tmini_t *lidar)
         return on_no_packet(lidar);
     case TMINI_PHASE_LISTENING:
         return TMINI_ERROR_TIMEOUT;
-    default: /* No reply came, no start packet, or the line did not become quiet. */
-        return try_again(lidar, TMINI_ERROR_TIMEOUT);
+    default:
+        return try_again(lidar);
     }
 }
 

@@ -6,9 +6,8 @@
 #include "tmini_driver.h"
 
 /* As in tmini_command.c, which does not export them. */
-#define STEPS_MAX 20
+#define STEPS_MAX 39
 #define ASKS_MAX 30
-#define ASKS_LEFT_MAX (ASKS_MAX + 8) /* When the last step has failed. */
 #define CHANCES_MAX 3
 #define PLAUSIBLE_CHZ_MAX 2000
 
@@ -297,10 +296,7 @@ static bool unsent_is_sound(unsigned unsent)
 /* The same member counts questions, and the chances of a lidar whose packets stay away. */
 static unsigned asks_max(uint8_t phase)
 {
-    if (phase >= TMINI_PHASE_SCANNING) {
-        return CHANCES_MAX;
-    }
-    return phase > TMINI_PHASE_IDLE ? ASKS_MAX : ASKS_LEFT_MAX;
+    return phase >= TMINI_PHASE_SCANNING ? CHANCES_MAX : ASKS_MAX;
 }
 
 static bool command_is_sound(const tmini_command_t *command)

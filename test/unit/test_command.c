@@ -115,8 +115,8 @@ static const row_t tales[] IN_FLASH = {
         "idle set:800 >0D <600 +50 >0B set:600 <700 +50 >0C <600 +50 >0D <600 !FREQUENCY"),
     ROW(a_last_question_that_shows_another_frequency_leads_to_another_step,
         "idle set:700 >0D <600 +50 >0B <700 +50 >0D <600 +50 >0B <700 +50 >0D <700 !FREQUENCY"),
-    ROW(a_lidar_that_never_gets_there_fails_after_20_steps,
-        "idle set:1200 >0D <600 +50 10( >0B <700 +50 >0B <600 +50 ) !FAILED ?REPLY frequency >65 "
+    ROW(a_lidar_that_never_gets_there_fails_after_32_steps,
+        "idle set:1200 >0D <600 +50 16( >0B <700 +50 >0B <600 +50 ) !FAILED ?REPLY frequency >65 "
         "+50 >0D <600 +50 >0B"),
     ROW(a_late_copy_of_the_reply_before_is_not_taken_for_a_refusal,
         "idle set:800 >0D <600 +50 >0B <600 +1000 <700 +50 >0B <800 +50 >0D <800 !FREQUENCY"),
@@ -124,7 +124,7 @@ static const row_t tales[] IN_FLASH = {
         "idle set:800 >0D <600 +50 >0B <600 ~1999 !NONE ~1 >0D <700 +50 >0B <800 +50 >0D <800 "
         "!FREQUENCY"),
     ROW(a_lidar_that_refuses_steps_fails_with_an_error_of_its_reply,
-        "idle set:800 >0D <600 +50 3( >0B <600 ~2000 >0D <600 +50 ) >0B <600 ~2000 !FAILED ?REPLY "
+        "idle set:800 >0D <600 +50 4( >0B <600 ~2000 >0D <600 +50 ) !FAILED ?REPLY "
         "timeouts:4"),
     ROW(another_reply_to_a_step_is_awaited_for_2_s_even_if_replies_have_no_limit,
         "reply:0 idle set:700 >0D <600 +50 >0B <600 !NONE +2000 >0D <600 +50 >0B"),
@@ -133,10 +133,11 @@ static const row_t tales[] IN_FLASH = {
     ROW(an_answer_that_may_be_late_is_confirmed, "idle set:700 >0D <600 +50 >0B +2000 >0D <700 +50 "
                                                  ">0D <710 +50 >0A <700 +50 >0D <700 !FREQUENCY"),
     ROW(a_lidar_that_loses_its_power_between_steps_is_asked_until_it_answers,
-        "idle set:800 >0D <600 +50 >0B +2000 21( >0D +250 ) >0D +250 !FAILED ?TIMEOUT #0"),
-    ROW(a_step_without_an_answer_counts_as_eight_questions_of_30,
-        "idle set:800 >0D <600 +50 >0B +2000 13( >0D +250 ) >0D <600 +50 >0B +2000 !FAILED "
-        "?TIMEOUT"),
+        "idle set:800 >0D <600 +50 >0B +2000 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT #0"),
+    ROW(a_lidar_that_is_deaf_after_each_step_gets_the_whole_time_again,
+        "idle set:800 >0D <600 +50 4( >0B +2000 29( >0D +250 ) >0D <600 +50 ) !FAILED ?REPLY #600"),
+    ROW(a_last_question_without_an_answer_is_repeated_but_not_for_ever,
+        "idle set:700 >0D <600 +50 >0B <700 +50 5( >0D +2000 >0D <700 +50 ) !FAILED ?REPLY"),
     ROW(a_packet_while_the_frequency_is_set_means_that_the_stop_was_lost,
         "idle set:700 >0D <P >65 +50 >0D <600 +50 >0B <P >65 +50 >0D <600 +50 >0B <600 !NONE <P "
         ">65 +50 >0D <700 +50 >0D <700 !FREQUENCY"),
