@@ -4,33 +4,33 @@
 #include "tmini/parts/tmini_reply.h"
 
 /* How the replies begin (sections 3 and 4). */
-enum { FREQUENCY_REPLY, PACKETS_REPLY, INFO_REPLY, HEALTH_REPLY };
-static const tmini_reply_header_t headers[] = {
-    [FREQUENCY_REPLY] = {.type = 0x04,
-                         .mode = TMINI_REPLY_MODE_SINGLE,
-                         .length = TMINI_FREQUENCY_SIZE},
-    [PACKETS_REPLY] = {.type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS, .length = 0},
-    [INFO_REPLY] = {.type = 0x04, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_INFO_SIZE},
-    [HEALTH_REPLY] = {.type = 0x06, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_HEALTH_SIZE},
+typedef struct {
+    uint8_t command;
+    tmini_reply_header_t header;
+} reply_t;
+
+static const reply_t replies[] = {
+    {TMINI_COMMAND_GET_FREQUENCY,
+     {.type = 0x04, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_FREQUENCY_SIZE}},
+    {TMINI_COMMAND_START, {.type = 0x81, .mode = TMINI_REPLY_MODE_CONTINUOUS, .length = 0}},
+    {TMINI_COMMAND_GET_INFO,
+     {.type = 0x04, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_INFO_SIZE}},
+    {TMINI_COMMAND_GET_HEALTH,
+     {.type = 0x06, .mode = TMINI_REPLY_MODE_SINGLE, .length = TMINI_HEALTH_SIZE}},
 };
 
-/* Most commands have the frequency as their reply: its query, and each of its steps. */
 const tmini_reply_header_t *tmini_reply_header(tmini_command_code_t command)
 {
-    size_t reply = FREQUENCY_REPLY;
-    if (command == TMINI_COMMAND_STOP || command == TMINI_COMMAND_REBOOT) {
-        return NULL;
+    const reply_t *const end = &replies[sizeof replies / sizeof replies[0]];
+    if (command < TMINI_COMMAND_GET_FREQUENCY) { /* A step: it has the same reply. */
+        command = TMINI_COMMAND_GET_FREQUENCY;
     }
-    if (command == TMINI_COMMAND_START) {
-        reply = PACKETS_REPLY;
+    for (const reply_t *reply = replies; reply != end; reply++) {
+        if (reply->command == command) {
+            return &reply->header;
+        }
     }
-    if (command == TMINI_COMMAND_GET_INFO) {
-        reply = INFO_REPLY;
-    }
-    if (command == TMINI_COMMAND_GET_HEALTH) {
-        reply = HEALTH_REPLY;
-    }
-    return &headers[reply];
+    return NULL;
 }
 
 typedef char information_is_sent_as_it_is_kept[sizeof(tmini_info_t) == TMINI_INFO_SIZE ? 1 : -1];
