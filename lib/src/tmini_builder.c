@@ -77,8 +77,9 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
 {
     tmini_scan_t *const scan = &builder->scan;
     const int32_t beyond = builder->swept_q6 + ahead - CIRCLE_Q6;
+    const int32_t took_ms = (int32_t)(now_ms - scan->start_ms);
     scan->checksum_errors = (uint16_t)(packet->frame->checksum_errors - scan->checksum_errors);
-    scan->end_ms = (int32_t)(now_ms - scan->start_ms) < 0 ? scan->start_ms : now_ms;
+    scan->end_ms = scan->start_ms + (took_ms > 0 ? (uint32_t)took_ms : 0);
     const bool is_long = is_whole(scan) && took_too_long(builder);
     if (is_long) {
         scan->gaps = 1; /* It was 0. */
