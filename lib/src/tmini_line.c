@@ -138,24 +138,31 @@ static void note_work(tmini_line_t *line, uint32_t passed_ms)
     line->busy_ms = (uint16_t)(limited_ms > 0 ? limited_ms : 1);
 }
 
+/* Returns how much time has passed since the last look. A step back may hide a turn among the bytes
+ * up to `arrived`. */
+static uint32_t follow_clock(tmini_line_t *line, uint32_t clock_ms, size_t arrived)
+{
+    const uint32_t passed_ms = clock_ms - line->now_ms;
+    const uint32_t back_ms = line->now_ms - clock_ms;
+    if (line->now_ms != 0 && back_ms <= STEP_BACK_MAX_MS) {
+        if (back_ms > STEP_BACK_FREE_MS) {
+            doubt_to(line, arrived);
+        }
+        return 0;
+    }
+    line->now_ms = clock_ms != 0 ? clock_ms : 1; /* 0 means: never looked. The clock catches up. */
+    return passed_ms;
+}
+
 bool tmini_line_look(tmini_t *lidar, bool is_scanning)
 {
     tmini_line_t *const line = &lidar->line;
     const size_t head = tmini_ring_head(&lidar->ring);
     const size_t count = tmini_ring_distance(line->received, head);
     const uint32_t clock_ms = lidar->link.port->now_ms(lidar->link.port_context);
-    const uint32_t back_ms = line->now_ms - clock_ms;
-    const bool is_back = line->now_ms != 0 && back_ms <= STEP_BACK_MAX_MS;
-    const uint32_t passed_ms = is_back ? 0 : clock_ms - line->now_ms;
-    line->now_ms += passed_ms;
-    if (line->now_ms == 0 && passed_ms > 0) {
-        line->now_ms = 1; /* 0 means: never looked. The clock catches up. */
-    }
     line->received = head;
     const size_t held = held_by_port(lidar);
-    if (is_back && back_ms > STEP_BACK_FREE_MS) {
-        doubt_to(line, head + held);
-    }
+    const uint32_t passed_ms = follow_clock(line, clock_ms, head + held);
     if (line->held > count + held) {
         line->held = 0; /* The port has lost them. */
     }
