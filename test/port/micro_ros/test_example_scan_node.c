@@ -118,7 +118,6 @@ void test_each_scan_is_published(void)
     TEST_ASSERT_EQUAL_UINT32(virtual_agent.published, node.counters.published);
     TEST_ASSERT_EQUAL_UINT32(0, node.counters.unpublished);
     TEST_ASSERT_EQUAL_UINT32(1, node.counters.connections);
-    TEST_ASSERT_EQUAL_STRING("scan", virtual_agent.topic);
 }
 
 void test_a_message_shows_the_room(void)

@@ -105,56 +105,51 @@ const rosidl_message_type_support_t *laser_scan_type_support(void)
     return &laser_scan;
 }
 
+/* Objects are opened from the outer to the inner one, and closed in the reverse order. */
+static rcl_ret_t open_one(const char *function, bool *is_open, bool outer_is_open)
+{
+    TEST_ASSERT_FALSE(*is_open);
+    TEST_ASSERT_TRUE(outer_is_open);
+    *is_open = works(function);
+    return *is_open ? RCL_RET_OK : RCL_RET_ERROR;
+}
+
 rcl_ret_t rclc_support_init(rclc_support_t *support, int argc, char const *const *argv,
                             rcl_allocator_t *allocator)
 {
-    TEST_ASSERT_FALSE(virtual_agent.support_open);
-    TEST_ASSERT_EQUAL_PTR(&virtual_agent, allocator->state);
     (void)argc, (void)argv;
-    if (!works("support") || !virtual_agent.present) {
+    TEST_ASSERT_EQUAL_PTR(&virtual_agent, allocator->state);
+    if (!virtual_agent.present) {
         return RCL_RET_ERROR;
     }
-    virtual_agent.support_open = true;
     context.destroy_timeout_ms = 1000;
     support->context.impl = &context;
     support->allocator = allocator;
-    return RCL_RET_OK;
+    return open_one("support", &virtual_agent.support_open, true);
 }
 
 rcl_ret_t rclc_node_init_default(rcl_node_t *node, const char *name, const char *name_space,
                                  rclc_support_t *support)
 {
-    TEST_ASSERT_TRUE(virtual_agent.support_open);
-    TEST_ASSERT_FALSE(virtual_agent.node_open);
     TEST_ASSERT_NULL(node->impl);
-    TEST_ASSERT_NOT_NULL(support);
+    TEST_ASSERT_EQUAL_PTR(&context, support->context.impl);
     TEST_ASSERT_EQUAL_STRING("tmini", name);
     TEST_ASSERT_EQUAL_STRING("", name_space);
-    if (!works("node")) {
-        return RCL_RET_ERROR;
-    }
-    virtual_agent.node_open = true;
     node->impl = &virtual_agent;
-    return RCL_RET_OK;
+    return open_one("node", &virtual_agent.node_open, virtual_agent.support_open);
 }
 
 rcl_ret_t rclc_publisher_init_default(rcl_publisher_t *publisher, const rcl_node_t *node,
                                       const rosidl_message_type_support_t *type_support,
                                       const char *topic_name)
 {
-    TEST_ASSERT_TRUE(virtual_agent.node_open);
-    TEST_ASSERT_FALSE(virtual_agent.publisher_open);
     TEST_ASSERT_NULL(publisher->impl);
-    TEST_ASSERT_NOT_NULL(node->impl);
+    TEST_ASSERT_EQUAL_PTR(&virtual_agent, node->impl);
     TEST_ASSERT_EQUAL_PTR(&laser_scan, type_support);
-    if (!works("publisher")) {
-        return RCL_RET_ERROR;
-    }
-    strncpy(virtual_agent.topic, topic_name, sizeof virtual_agent.topic - 1);
-    virtual_agent.publisher_open = true;
+    TEST_ASSERT_EQUAL_STRING("scan", topic_name);
     publisher_handle.session_timeout_ms = 1000;
     publisher->impl = &publisher_handle;
-    return RCL_RET_OK;
+    return open_one("publisher", &virtual_agent.publisher_open, virtual_agent.node_open);
 }
 
 /* A reliable publisher waits for the agent's acknowledgement. */
@@ -171,7 +166,6 @@ rcl_ret_t rcl_publish(const rcl_publisher_t *publisher, const void *message,
     return result;
 }
 
-/* Objects must be closed in the reverse order of opening. */
 static rcl_ret_t close_one(bool *is_open, bool inner_is_open)
 {
     TEST_ASSERT_TRUE(*is_open);

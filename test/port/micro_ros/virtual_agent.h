@@ -24,7 +24,6 @@ typedef struct {
     unsigned synchronisations;
     int longest_wait_ms;
     unsigned published;
-    char topic[16];
     sensor_msgs__msg__LaserScan message; /* The last message; its arrays belong to the publisher. */
 } virtual_agent_t;
 
