@@ -9,7 +9,6 @@
 #include "machine.h"
 #include "unity.h"
 
-static void (*assert_stops)(bool stops);
 static jmp_buf end_of_story;
 static unsigned chapter;
 
@@ -18,48 +17,48 @@ static void it_scans_and_an_obstacle_comes(void)
     assert_said("model 151, firmware 1.2, hardware 1, serial 2026031700012345\n");
     assert_last_said(", go;");
     assert_last_said("lost: 0 checksums, 0 bytes, 0 "); /* Gaps or overflows. */
-    assert_stops(false);
+    example_assert_stops(false);
     sim_place_obstacle(&machine.lidar, 0, 640, 250);
 }
 
 static void it_stops_and_the_obstacle_goes(void)
 {
     assert_last_said(", STOP;");
-    assert_stops(true);
+    example_assert_stops(true);
     sim_clear_obstacles(&machine.lidar);
 }
 
 /* It still measures, and nothing is near. */
 static void it_goes_and_becomes_faulty(void)
 {
-    assert_stops(false);
+    example_assert_stops(false);
     sim_set_health(&machine.lidar, SIM_HEALTH_PD);
 }
 
 static void it_stops_and_is_repaired(void)
 {
     assert_said("faults: PD\n");
-    assert_stops(true);
+    example_assert_stops(true);
     sim_set_health(&machine.lidar, 0);
 }
 
 static void it_goes_and_power_fails(void)
 {
-    assert_stops(false);
+    example_assert_stops(false);
     machine_power(false);
 }
 
 static void it_is_blind_and_power_returns(void)
 {
     assert_said("lost; trying to get it back\n");
-    assert_stops(true);
+    example_assert_stops(true);
     machine_power(true);
 }
 
 static void it_has_come_back(void)
 {
     assert_said("back again\n");
-    assert_stops(false);
+    example_assert_stops(false);
 }
 
 static const struct {
@@ -77,24 +76,21 @@ static const struct {
 
 #define CHAPTERS (sizeof chapters / sizeof chapters[0])
 
-void story_begin(void (*check)(bool stops))
+void setUp(void)
 {
-    assert_stops = check;
     chapter = 0;
+    example_begin();
 }
 
-bool story_goes_on(void)
+void tearDown(void) {}
+
+void story_go_on(void)
 {
     if (chapter < CHAPTERS && machine.now_us >= chapters[chapter].time_us) {
         chapters[chapter].happens();
         chapter++;
     }
-    return chapter < CHAPTERS;
-}
-
-void story_go_on(void)
-{
-    if (!story_goes_on()) {
+    if (chapter == CHAPTERS) {
         story_leave();
     }
 }
@@ -104,18 +100,17 @@ void story_leave(void)
     longjmp(end_of_story, 1);
 }
 
-void story_run(int (*program)(void), void (*on_sleep)(void))
+void story_run(int (*program)(void))
 {
-    machine.on_sleep = on_sleep;
     if (setjmp(end_of_story) == 0) {
         (void)program();
     }
 }
 
-void story_tell(int (*program)(void), void (*check)(bool stops), void (*on_sleep)(void))
+/* One test for the whole program, because it never ends. */
+void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
 {
-    story_begin(check);
-    story_run(program, on_sleep);
-    TEST_ASSERT_FALSE(story_goes_on());
+    story_run(example_play);
+    TEST_ASSERT_EQUAL_UINT(CHAPTERS, chapter);
     assert_console_leaves_time(1024);
 }

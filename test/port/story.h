@@ -3,26 +3,27 @@
 
 /* A story for the obstacle stops in examples/: an obstacle comes and goes, the lidar becomes faulty
  * and is repaired, and its power fails and returns. The program must print the lidar's model, and
- * stop the robot only while needed. */
+ * stop the robot only while needed; printing must leave time.
+ *
+ * story.c holds the test. The test of each example defines the functions example_…(). */
 
 #ifndef STORY_H
 #define STORY_H
 
 #include <stdbool.h>
 
-/* Begins the story; `assert_stops` checks whether the program now stops the robot. */
-void story_begin(void (*assert_stops)(bool stops));
+void example_begin(void);              /* Resets the model. */
+int example_play(void);                /* Runs the program; while that sleeps, story_go_on(). */
+void example_assert_stops(bool stops); /* Whether the program now stops the robot. */
 
-/* Call this repeatedly: it does and checks what is due. Returns false at the end of the story. */
-bool story_goes_on(void);
+/* The program's main() with another name. */
+int example_main(void);
 
-/* For a program that never ends: while it sleeps, story_go_on() lets the story go on, and leaves
- * the program at the end; story_leave() leaves it at once. */
+/* Does and checks what is due; leaves the program at the end of the story. */
 void story_go_on(void);
-void story_leave(void);
-void story_run(int (*program)(void), void (*on_sleep)(void));
 
-/* Tells the whole story; printing must leave time. */
-void story_tell(int (*program)(void), void (*assert_stops)(bool stops), void (*on_sleep)(void));
+/* Leaves the program that story_run() has begun. */
+void story_leave(void);
+void story_run(int (*program)(void));
 
 #endif

@@ -15,36 +15,32 @@
 
 void app_main(void);
 
+void example_begin(void)
+{
+    idf_begin(NULL);
+    idf_begin_tasks();
+}
+
+void example_assert_stops(bool stops)
+{
+    TEST_ASSERT_EQUAL_INT(stops, idf_pin(STOP_PIN));
+    assert_said("I lidar: health: faults: none\n");
+}
+
 static void run_program(void *argument)
 {
     (void)argument;
     app_main();
 }
 
-void setUp(void)
-{
-    idf_begin(NULL);
-    idf_begin_tasks();
-}
-
-void tearDown(void) {}
-
-static void assert_pin(bool stops)
-{
-    TEST_ASSERT_EQUAL_INT(stops, idf_pin(STOP_PIN));
-}
-
-/* One test for the whole program, because it never ends. */
-void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
+int example_play(void)
 {
     idf_begin_task(run_program, NULL);
     vTaskDelay(20);
-    assert_pin(true); /* Nothing has been seen yet. */
+    TEST_ASSERT_EQUAL_INT(1, idf_pin(STOP_PIN)); /* Nothing has been seen yet. */
     TEST_ASSERT_FALSE(idf.pins[STOP_PIN].has_been_low);
-    story_begin(assert_pin);
-    while (story_goes_on()) {
+    for (;;) {
         vTaskDelay(10);
+        story_go_on();
     }
-    assert_said("I lidar: health: faults: none\n");
-    assert_console_leaves_time(1024);
 }

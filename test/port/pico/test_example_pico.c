@@ -12,9 +12,7 @@
 #define STOP_PIN 15
 #define START_US 200000u /* Before this time nothing has been seen. */
 
-int example_main(void);
-
-static void assert_pin(bool stops)
+void example_assert_stops(bool stops)
 {
     TEST_ASSERT_EQUAL_INT(stops, chip.levels[STOP_PIN]);
 }
@@ -22,28 +20,27 @@ static void assert_pin(bool stops)
 static void go_on(void)
 {
     if (machine.now_us < START_US) {
-        assert_pin(true);
+        example_assert_stops(true);
     }
     story_go_on();
 }
 
-void setUp(void)
+void example_begin(void)
 {
     pico_model_begin(NULL);
+    machine.on_sleep = go_on;
 }
 
-void tearDown(void) {}
-
-/* One test for the whole program, because it never ends. */
-void test_it_names_the_lidar_and_stops_the_robot_only_while_it_must(void)
+int example_play(void)
 {
-    story_tell(example_main, assert_pin, go_on);
+    return example_main();
 }
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)
 {
     chip.baud_error_permille = 50;
-    story_run(example_main, story_leave);
+    machine.on_sleep = story_leave;
+    story_run(example_main);
     assert_said("the lidar cannot be started: ");
-    assert_pin(true);
+    example_assert_stops(true);
 }

@@ -9,25 +9,21 @@
 #include "story.h"
 #include "zephyr_model.h"
 
-int example_main(void);
+void example_begin(void)
+{
+    zephyr_model_begin(NULL);
+    zephyr_model_boot();
+    machine.on_sleep = story_go_on;
+}
 
-static void assert_last_line(bool stops)
+void example_assert_stops(bool stops)
 {
     assert_last_said(stops ? ", STOP;" : ", go;");
 }
 
-void setUp(void)
+int example_play(void)
 {
-    zephyr_model_begin(NULL);
-    zephyr_model_boot();
-}
-
-void tearDown(void) {}
-
-/* One test for the whole program, because it never ends. */
-void test_it_names_the_lidar_and_reports_whether_a_robot_may_move(void)
-{
-    story_tell(example_main, assert_last_line, story_go_on);
+    return example_main();
 }
 
 void test_it_says_so_when_the_lidar_cannot_be_started(void)
