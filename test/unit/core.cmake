@@ -4,7 +4,6 @@
 # The library's core, from bytes to scans.
 tmini_add_unit_test(test_names SOURCES test_names.c)
 tmini_add_unit_test(test_ring SOURCES test_ring.c LIBRARIES tmini_test_rows tmini_test_support)
-tmini_add_unit_test(test_frame SOURCES test_frame.c)
 tmini_add_unit_test(test_parser SOURCES test_parser.c
     LIBRARIES tmini_test_rows tmini_test_receiver)
 tmini_add_unit_test(test_packet SOURCES test_packet.c

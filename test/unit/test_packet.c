@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Packets: header fields, and samples as points (sections 5 and 9). */
+/* Packets: header fields, samples in the ring, and samples as points (sections 5 and 9). */
 
 #include "known_packets.h"
 #include "receiver.h"
@@ -263,6 +263,20 @@ static const uint16_t manual_angles[19] = {21706, 21783, 21860, 21937, 22013, 22
                                            22244, 22321, 22398, 22474, 22551, 22628, 22705,
                                            22782, 22859, 22935, 23012, 49};
 
+/* Up to the memory's end samples are read where they are; one that straddles it is a copy. */
+static void expect_samples_of_one_piece(size_t up_to_the_end)
+{
+    uint8_t joined[4] = {0, 0, 0, 0x5A};
+    size_t count = 19;
+    const uint8_t *const samples = tmini_frame_samples(receiver.packet.frame, 0, &count, joined);
+    TEST_ASSERT_EQUAL_PTR(up_to_the_end < 3 ? joined : &memory[256 - up_to_the_end], samples);
+    TEST_ASSERT_EQUAL_UINT(up_to_the_end < 3    ? 1
+                           : up_to_the_end < 57 ? up_to_the_end / 3
+                                                : 19,
+                           count);
+    TEST_ASSERT_EQUAL_HEX8(0x5A, joined[3]);
+}
+
 /* Each position of the packet puts another byte of it at the memory's end. */
 void test_the_manuals_packet_has_its_points_wherever_it_lies_in_the_ring(void)
 {
@@ -270,6 +284,7 @@ void test_the_manuals_packet_has_its_points_wherever_it_lies_in_the_ring(void)
         receiver_open(&receiver, memory, 256, 0);
         receiver_age(&receiver, (size_t)0 - before);
         open_packet(manual_packet, 67);
+        expect_samples_of_one_piece(before > 10 ? before - 10 : 256 - 10 + before);
         for (unsigned i = 0; i < 19; i++) {
             const tmini_point_t expected = {manual_angles[i], manual_distances[i], i != 14,
                                             i == 13 || i == 14 || i == 18 ? 2 : 0};

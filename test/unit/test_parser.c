@@ -410,6 +410,7 @@ static void tell_word(char *word)
         {"room", receiver_room(&receiver)},
         {"work", tmini_parser_has_work(&receiver.parser)},
         {"intact", tmini_frame_intact(frame)},
+        {"content", tmini_frame_content(frame, bytes, 0)}, /* May be used. */
         {"gap", receiver.packet.gap},
         {"last", frame->last_skipped},
     };
@@ -589,6 +590,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_packet_that_dma_overwrites_while_it_is_read_is_not_intact, /* It was delivered. */
         "dma <manual !19@0 intact:1 <zeros:189 intact:1 <zeros:1 intact:0 !none overrun:0 "
         "skipped:190"),
+    ROW(a_reply_that_dma_overwrites_while_it_is_read_may_not_be_used,
+        "dma " AWAIT_HEALTH "<health !health@0 <zeros:246 content:1 <zeros:1 content:0"),
     /* ---- Skipping ---- */
     ROW(skipping_drops_all_unread_bytes, "<start <x:22 skip-all skipped:14 pending:0 last:0x22 "
                                          "<manual !19@14 gap:14 <x:AA skip-all pending:0"),
