@@ -45,11 +45,12 @@ static bool continues(const tmini_packet_t *packet, int32_t ahead, int32_t angle
            angle >= -JUMP_Q6;
 }
 
-/* Counts one more, up to the highest number. */
+/* Counts one more, unless that would wrap to 0. */
 static void count_one(uint16_t *total)
 {
-    if (*total < UINT16_MAX) {
-        (*total)++;
+    const uint16_t next = (uint16_t)(*total + 1);
+    if (next > 0) {
+        *total = next;
     }
 }
 
@@ -88,7 +89,9 @@ static void finish(tmini_builder_t *builder, const tmini_packet_t *packet, int32
                     !tmini_packet_misses(packet, packet->frame->gap))) {
         builder->late_scans++;
     }
-    scan->complete = is_whole(scan) && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6;
+    if (is_whole(scan) && beyond >= -JUMP_Q6 && beyond <= JUMP_Q6) {
+        scan->complete = true; /* It was false. */
+    }
     builder->open = false;
     builder->ended = true;
 }

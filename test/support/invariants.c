@@ -128,7 +128,7 @@ bool builder_is_sound(const tmini_builder_t *builder)
 {
     const tmini_scan_t *const scan = &builder->scan;
     return builder->capacity > 0 && !(builder->ended && builder->open) &&
-           (!builder->open || scan->packets > 0) && scan->points != NULL &&
+           (!builder->open || (scan->packets > 0 && !scan->complete)) && scan->points != NULL &&
            scan->count <= builder->capacity &&
            (builder->filter & ~(unsigned)TMINI_FILTER_BOTH) == 0 &&
            builder->previous_angle_q6 < TMINI_FULL_CIRCLE_Q6 && builder->swept_q6 >= SWEPT_MIN_Q6 &&
