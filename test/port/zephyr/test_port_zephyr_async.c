@@ -10,7 +10,9 @@
 #include <zephyr/drivers/uart.h>
 
 #include "irq_lines.h"
-#include "zephyr_rig.h"
+#include "every_port.h"
+#include "tmini_zephyr.h"
+#include "zephyr_model.h"
 
 const port_way_t port_ways[] = {
     {.name = "through two buffers in turn",
@@ -25,16 +27,18 @@ const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 void test_line_errors_are_counted_by_kind_and_reception_starts_again(void)
 {
     static const int errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
+    tmini_zephyr_counters_t counters;
     start();
     assert_true_scans(1, 1);
     for (unsigned i = 0; i < 3; i++) {
         board.damage = errors[i];
         assert_gap();
     }
-    TEST_ASSERT_EQUAL_UINT32(1, counted().framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().noise_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counted().breaks);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().overruns);
+    tmini_zephyr_counters(port_program.context, &counters);
+    TEST_ASSERT_EQUAL_UINT32(1, counters.framing_errors);
+    TEST_ASSERT_EQUAL_UINT32(1, counters.noise_errors);
+    TEST_ASSERT_EQUAL_UINT32(1, counters.breaks);
+    TEST_ASSERT_EQUAL_UINT32(0, counters.overruns);
 }
 
 /* On a line held low, each byte is an error, but there is at most one interrupt per 10 ms. */
@@ -43,12 +47,12 @@ void test_a_line_held_low_causes_no_interrupt_storm(void)
     start();
     assert_true_scans(1, 1);
     machine_power(false);
-    const uint32_t before = counted().breaks;
+    const uint32_t before = port_counted().breaks;
     for (unsigned i = 0; i < 1000; i++) {
         board.damage = UART_BREAK;
         machine_receive(0, (const uint8_t *)"", 1);
     }
-    TEST_ASSERT_LESS_OR_EQUAL_UINT32(before + 2, counted().breaks);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(before + 2, port_counted().breaks);
 }
 
 void test_a_driver_without_the_async_api_is_refused_and_not_started(void)
@@ -58,10 +62,9 @@ void test_a_driver_without_the_async_api_is_refused_and_not_started(void)
     TEST_ASSERT_EQUAL_INT(-ENOSYS, port_start());
     board.async = 0;
     board.async_enable = -ENODEV;
-    TEST_ASSERT_EQUAL_INT(-ENODEV, tmini_zephyr_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(-ENODEV, port_start());
     board.async_enable = 0;
-    TEST_ASSERT_EQUAL_INT(0, tmini_zephyr_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(-EALREADY, tmini_zephyr_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, port_start());
 }
 
 void test_reception_that_was_ended_starts_again(void)
@@ -70,8 +73,9 @@ void test_reception_that_was_ended_starts_again(void)
     assert_true_scans(1, 1);
     TEST_ASSERT_EQUAL_INT(0, uart_rx_disable(&zephyr_model_uart));
     assert_gap();
-    tmini_zephyr_port.restart(&port); /* The driver does this after a loss. */
+    port_program.port->restart(port_program.context); /* The driver does this after a loss. */
     (void)scans_until_complete();
-    tmini_zephyr_stop(&port);
-    tmini_zephyr_port.restart(&port); /* A restart of a stopped port does nothing. */
+    port_stop();
+    port_program.port->restart(
+        port_program.context); /* A restart of a stopped port does nothing. */
 }
