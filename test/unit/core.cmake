@@ -2,13 +2,13 @@
 # Copyright (c) 2026 The tmini authors
 
 # The library's core, from bytes to scans.
-tmini_add_unit_test(test_names SOURCES test_names.c)
+tmini_add_unit_test(test_names SOURCES test_names.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_ring SOURCES test_ring.c LIBRARIES tmini_test_rows tmini_test_support)
 tmini_add_unit_test(test_parser SOURCES test_parser.c
     LIBRARIES tmini_test_rows tmini_test_receiver)
 tmini_add_unit_test(test_packet SOURCES test_packet.c
     LIBRARIES tmini_test_rows tmini_test_receiver)
-tmini_add_unit_test(test_reply SOURCES test_reply.c)
+tmini_add_unit_test(test_reply SOURCES test_reply.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_ct SOURCES test_ct.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_builder SOURCES test_builder.c
     LIBRARIES tmini_test_rows tmini_test_receiver)

@@ -4,136 +4,114 @@
 /* Replies: their format for each command, and the meaning of their content (sections 3, 4 and
  * 9). */
 
-#include "tmini/tmini_names.h"
+#include "rows.h"
+
 #include "tmini/parts/tmini_reply.h"
+#include "tmini/tmini_names.h"
 
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+static tmini_info_t info;
+static tmini_health_t health;
 
 void setUp(void) {}
 
 void tearDown(void) {}
 
-/* Only the start is answered in continuous mode; stop and reboot are not answered. */
-void test_each_command_has_its_reply(void)
+/* Words of the rows:
+ *
+ *     90=0:04:20      the command 90 has a reply of this mode, type and length; 65=: it has none
+ *     info:9702…      the content of a reply: information; serial:2025…: its serial number, in words
+ *     health:023412 frequency:58020000=600    the same with health; with a frequency
+ *     model:151 …     what the content says */
+
+static void expect_header(const char *word)
 {
-    static const struct {
-        tmini_command_code_t command;
-        bool is_answered;
-        tmini_reply_header_t header;
-    } replies[] = {
-        {TMINI_COMMAND_STOP, false, {0}},
-        {TMINI_COMMAND_REBOOT, false, {0}},
-        {TMINI_COMMAND_START, true, {.mode = 1, .type = 0x81, .length = 0}},
-        {TMINI_COMMAND_GET_INFO, true, {.mode = 0, .type = 0x04, .length = 20}},
-        {TMINI_COMMAND_GET_HEALTH, true, {.mode = 0, .type = 0x06, .length = 3}},
-        {TMINI_COMMAND_FASTER_TENTH, true, {.mode = 0, .type = 0x04, .length = 4}},
-        {TMINI_COMMAND_SLOWER_TENTH, true, {.mode = 0, .type = 0x04, .length = 4}},
-        {TMINI_COMMAND_FASTER_ONE, true, {.mode = 0, .type = 0x04, .length = 4}},
-        {TMINI_COMMAND_SLOWER_ONE, true, {.mode = 0, .type = 0x04, .length = 4}},
-        {TMINI_COMMAND_GET_FREQUENCY, true, {.mode = 0, .type = 0x04, .length = 4}},
-    };
-    for (size_t i = 0; i < sizeof replies / sizeof replies[0]; i++) {
-        const tmini_reply_header_t *const header = tmini_reply_header(replies[i].command);
-        TEST_ASSERT_EQUAL_MESSAGE(replies[i].is_answered, header != NULL, "is answered");
-        if (header != NULL) {
-            TEST_ASSERT_EQUAL_HEX8(replies[i].header.mode, header->mode);
-            TEST_ASSERT_EQUAL_HEX8(replies[i].header.type, header->type);
-            TEST_ASSERT_EQUAL_UINT8(replies[i].header.length, header->length);
-        }
+    char *rest;
+    const unsigned long command = strtoul(word, &rest, 16);
+    const tmini_reply_header_t *const header = tmini_reply_header((tmini_command_code_t)command);
+    TEST_ASSERT_EQUAL_MESSAGE(rest[1] != '\0', header != NULL, word);
+    if (header != NULL) {
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(strtoul(rest + 1, &rest, 16), header->mode, word);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(strtoul(rest + 1, &rest, 16), header->type, word);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(strtoul(rest + 1, NULL, 10), header->length, word);
     }
 }
 
-/* Two T-mini Plus (section 9.4) and a T-mini Pro, whose firmware's minor number comes first. The
- * second is composed from the output of the vendor's program (issue 65 of YDLIDAR/YDLidar-SDK). */
-static const struct {
-    uint8_t content[20];
-    tmini_info_t info; /* Without the serial number. */
-    const char *serial;
-} units[] = {
-    {{0x97, 2, 1, 1, 2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4},
-     {.model = 151, .firmware_major = 1, .firmware_minor = 2, .hardware = 1},
-     "2025042400090194"},
-    {{0x97, 3, 1, 1, 2, 0, 2, 4, 0, 4, 1, 3, 0, 0, 0, 9, 0, 0, 9, 0},
-     {.model = 151, .firmware_major = 1, .firmware_minor = 3, .hardware = 1},
-     "2024041300090090"},
-    {{0x96, 0, 1, 2, 2, 0, 2, 2, 1, 1, 0, 3, 0, 1, 1, 1, 1, 1, 1, 1},
-     {.model = 150, .firmware_major = 1, .firmware_minor = 0, .hardware = 2},
-     "2022110301111111"},
+static void expect_serial(const char *digits)
+{
+    char serial[TMINI_SERIAL_DIGITS + 2];
+    serial[TMINI_SERIAL_DIGITS + 1] = 'x';
+    tmini_serial_text(&info, serial);
+    TEST_ASSERT_EQUAL_STRING(digits, serial);
+    TEST_ASSERT_EQUAL_INT('x', serial[TMINI_SERIAL_DIGITS + 1]);
+}
+
+static void tell_word(char *word)
+{
+    char *const wanted = strchr(word, '=');
+    uint8_t content[TMINI_INFO_SIZE];
+    const row_number_t numbers[] = {
+        {"model", info.model},
+        {"plus", info.model == TMINI_MODEL_T_MINI_PLUS},
+        {"firmware", info.firmware_major},
+        {"firmware-minor", info.firmware_minor},
+        {"hardware", info.hardware},
+        {"faults", health.faults},
+        {"code", health.error_code},
+    };
+    if (row_is(word, "info")) {
+        (void)row_bytes(row_text(word), content);
+        tmini_reply_info(content, &info);
+    } else if (row_is(word, "serial")) {
+        expect_serial(row_text(word));
+    } else if (row_is(word, "health")) {
+        (void)row_bytes(row_text(word), content);
+        health = (tmini_health_t){0xEE, 0xEEEE};
+        tmini_reply_health(content, &health);
+    } else if (row_is(word, "frequency")) {
+        *wanted = '\0';
+        (void)row_bytes(row_text(word), content);
+        TEST_ASSERT_EQUAL_UINT32(strtoul(wanted + 1, NULL, 0), tmini_reply_frequency_chz(content));
+    } else if (wanted != NULL) {
+        expect_header(word);
+    } else {
+        TEST_ASSERT_TRUE_MESSAGE(row_expects(word, numbers), word);
+    }
+}
+
+static const row_t rows[] IN_FLASH = {
+    /* Only the start is answered in continuous mode. */
+    ROW(each_command_but_stop_and_reboot_has_its_reply,
+        "65= 40= 60=1:81:0 90=0:04:20 92=0:06:3 09=0:04:4 0A=0:04:4 0B=0:04:4 0C=0:04:4 0D=0:04:4"),
+    /* Two T-mini Plus (section 9.4) and a T-mini Pro, whose firmware's minor number comes first. The
+     * second is composed from the output of the vendor's program (issue 65 of
+     * YDLIDAR/YDLidar-SDK). */
+    ROW(device_information_of_real_units,
+        "info:9702010102000205000402040000000900010904 model:151 plus:1 firmware:1 "
+        "firmware-minor:2 "
+        "hardware:1 serial:2025042400090194 info:9703010102000204000401030000000900000900 "
+        "firmware-minor:3 serial:2024041300090090"),
+    ROW(device_information_of_a_t_mini_pro,
+        "info:9600010202000202010100030001010101010101 model:150 plus:0 firmware:1 "
+        "firmware-minor:0 hardware:2 serial:2022110301111111"),
+    ROW(each_byte_of_device_information_has_its_place,
+        "info:8081828300000000000000000000000000000000 model:0x80 firmware-minor:0x81 "
+        "firmware:0x82 hardware:0x83"),
+    ROW(what_is_not_a_digit_reads_as_a_question_mark,
+        "info:00000000090A30FF000102030405060708090080 serial:9???01234567890?"),
+    ROW(a_healthy_lidar_has_no_faults_and_no_error_code, "health:000000 faults:0 code:0"),
+    ROW(the_error_code_is_little_endian, "health:0234F2 faults:2 code:0xF234"),
+    ROW(the_six_fault_bits_are_kept_and_the_two_reserved_ones_left_out,
+        "health:FF0000 faults:0x3F"),
+    ROW(a_frequency_is_in_hundredths_of_a_hertz_and_little_endian,
+        "frequency:58020000=600 frequency:8192A3F4=0xF4A39281"),
 };
 
-void test_device_information_of_real_units(void)
+void test_rows(void)
 {
-    for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {
-        tmini_info_t info;
-        char serial[TMINI_SERIAL_DIGITS + 2];
-        memset(serial, 'x', sizeof serial);
-        tmini_reply_info(units[i].content, &info);
-        tmini_serial_text(&info, serial);
-        TEST_ASSERT_EQUAL_UINT8(units[i].info.model, info.model);
-        TEST_ASSERT_EQUAL_UINT8(units[i].info.firmware_major, info.firmware_major);
-        TEST_ASSERT_EQUAL_UINT8(units[i].info.firmware_minor, info.firmware_minor);
-        TEST_ASSERT_EQUAL_UINT8(units[i].info.hardware, info.hardware);
-        TEST_ASSERT_EQUAL_STRING(units[i].serial, serial);
-        TEST_ASSERT_EQUAL_INT('x', serial[TMINI_SERIAL_DIGITS + 1]);
-    }
-    TEST_ASSERT_EQUAL_UINT8(151, TMINI_MODEL_T_MINI_PLUS);
-}
-
-void test_each_byte_of_device_information_has_its_place(void)
-{
-    uint8_t content[20];
-    tmini_info_t info;
-    for (uint8_t i = 0; i < 20; i++) {
-        content[i] = (uint8_t)(0x80 + i);
-    }
-    tmini_reply_info(content, &info);
-    TEST_ASSERT_EQUAL_HEX8(0x80, info.model);
-    TEST_ASSERT_EQUAL_HEX8(0x81, info.firmware_minor);
-    TEST_ASSERT_EQUAL_HEX8(0x82, info.firmware_major);
-    TEST_ASSERT_EQUAL_HEX8(0x83, info.hardware);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(&content[4], info.serial, 16);
-}
-
-void test_what_is_not_a_digit_reads_as_a_question_mark(void)
-{
-    const tmini_info_t info = {.serial = {9, 10, '0', 255, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 128}};
-    char text[17];
-    tmini_serial_text(&info, text);
-    TEST_ASSERT_EQUAL_STRING("9???01234567890?", text);
-}
-
-void test_a_healthy_lidar_has_no_faults_and_no_error_code(void)
-{
-    const uint8_t content[3] = {0, 0, 0};
-    tmini_health_t health = {0xEE, 0xEEEE};
-    tmini_reply_health(content, &health);
-    TEST_ASSERT_EQUAL_HEX8(0, health.faults);
-    TEST_ASSERT_EQUAL_HEX16(0, health.error_code);
-}
-
-void test_the_error_code_is_little_endian(void)
-{
-    const uint8_t content[3] = {0x02, 0x34, 0xF2};
-    tmini_health_t health;
-    tmini_reply_health(content, &health);
-    TEST_ASSERT_EQUAL_HEX8(TMINI_FAULT_ENCODER, health.faults);
-    TEST_ASSERT_EQUAL_HEX16(0xF234, health.error_code);
-}
-
-void test_the_six_fault_bits_are_kept_and_the_two_reserved_ones_left_out(void)
-{
-    const uint8_t content[3] = {0xFF, 0, 0};
-    tmini_health_t health;
-    tmini_reply_health(content, &health);
-    TEST_ASSERT_EQUAL_HEX8(0x3F, health.faults);
-}
-
-void test_a_frequency_is_in_hundredths_of_a_hertz_and_little_endian(void)
-{
-    const uint8_t six_hertz[4] = {0x58, 0x02, 0, 0};
-    const uint8_t large[4] = {0x81, 0x92, 0xA3, 0xF4};
-    TEST_ASSERT_EQUAL_UINT32(600, tmini_reply_frequency_chz(six_hertz));
-    TEST_ASSERT_EQUAL_HEX32(0xF4A39281, tmini_reply_frequency_chz(large));
+    tell_rows(rows, tell_word);
 }
