@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Packs the ESP-IDF component as its manifest says, or unpacks a release's ARCHIVE, and builds the
-# example with a model of ESP-IDF's build: in the repository, and as a copy with the component, as a
-# user gets it from the component registry. If the environment variable IDF_PATH names an ESP-IDF,
-# the copy is also configured by ESP-IDF itself, for its target `linux`.
+# Unpacks a release's ESP-IDF component, and builds the example with a model of ESP-IDF's build: in
+# the repository, and as a copy with the component, as a user gets it from the component registry.
+# If the environment variable IDF_PATH names an ESP-IDF, the copy is also configured by ESP-IDF
+# itself, for its target `linux`.
 #
-#   cmake -D ROOT=DIR -D WORK=DIR [-D ARCHIVE=FILE] -P component.cmake
+#   cmake -D ROOT=DIR -D WORK=DIR -D ARCHIVE=FILE -P component.cmake
 
 cmake_minimum_required(VERSION 3.16)
 
@@ -34,31 +34,6 @@ function(refuse name source reason)
         message(FATAL_ERROR "${name}: not refused with \"${reason}\":\n${errors}")
     endif()
     message("${name}: refused")
-endfunction()
-
-function(unpack)
-    file(MAKE_DIRECTORY ${WORK}/packed)
-    # In the locale C, CMake 3.31 cannot unpack an archive whose path has accents.
-    file(RELATIVE_PATH archive ${WORK}/packed ${ARCHIVE})
-    run("unpacking" ${CMAKE_COMMAND} -E chdir ${WORK}/packed ${CMAKE_COMMAND} -E tar xf ${archive})
-endfunction()
-
-# Copies the files in the manifest's list to WORK/packed/tmini.
-function(pack)
-    file(STRINGS ${ROOT}/idf_component.yml lines)
-    string(REGEX REPLACE "^.*;  include:;" "" lines "${lines}")
-    string(REGEX MATCHALL "    - [^;]+" lines "${lines}")
-    foreach(line ${lines})
-        string(REPLACE "    - " "" pattern ${line})
-        file(GLOB names RELATIVE ${ROOT} ${ROOT}/${pattern})
-        if(NOT names)
-            message(FATAL_ERROR "idf_component.yml: nothing is named ${pattern}")
-        endif()
-        foreach(name ${names})
-            get_filename_component(folder ${name} DIRECTORY)
-            file(COPY ${ROOT}/${name} DESTINATION ${WORK}/packed/tmini/${folder})
-        endforeach()
-    endforeach()
 endfunction()
 
 # The registry treats each folder in `examples` as an example.
@@ -94,11 +69,10 @@ endfunction()
 
 set(real_idf "$ENV{IDF_PATH}")
 file(REMOVE_RECURSE ${WORK})
-if(ARCHIVE)
-    unpack()
-else()
-    pack()
-endif()
+file(MAKE_DIRECTORY ${WORK}/packed)
+# In the locale C, CMake 3.31 cannot unpack an archive whose path has accents.
+file(RELATIVE_PATH archive ${WORK}/packed ${ARCHIVE})
+run("unpacking" ${CMAKE_COMMAND} -E chdir ${WORK}/packed ${CMAKE_COMMAND} -E tar xf ${archive})
 check_pack()
 
 # ESP-IDF names the component after its folder: do not depend on the name of the repository's.
