@@ -93,37 +93,6 @@ dma_channel_config dma_channel_get_default_config(uint channel)
     return (dma_channel_config){.chain_to = channel, .data_size = 2, .read_increment = true};
 }
 
-void channel_config_set_transfer_data_size(dma_channel_config *config, int size)
-{
-    config->data_size = (uint)size;
-}
-
-void channel_config_set_read_increment(dma_channel_config *config, bool increment)
-{
-    config->read_increment = increment;
-}
-
-void channel_config_set_write_increment(dma_channel_config *config, bool increment)
-{
-    config->write_increment = increment;
-}
-
-void channel_config_set_ring(dma_channel_config *config, bool write, uint size_bits)
-{
-    config->ring_on_write = write;
-    config->ring_bits = size_bits;
-}
-
-void channel_config_set_dreq(dma_channel_config *config, uint dreq)
-{
-    config->dreq = dreq;
-}
-
-void channel_config_set_chain_to(dma_channel_config *config, uint chain_to)
-{
-    config->chain_to = chain_to;
-}
-
 /* The model supports only what a ring fed by a UART needs. Anything else is a bug of the port. */
 void dma_channel_configure(uint channel, const dma_channel_config *config, volatile void *write,
                            const volatile void *read, uint32_t transfer_count, bool begin)

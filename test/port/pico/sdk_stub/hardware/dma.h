@@ -28,12 +28,25 @@ typedef struct {
 int dma_claim_unused_channel(bool required);
 void dma_channel_unclaim(uint channel);
 dma_channel_config dma_channel_get_default_config(uint channel);
-void channel_config_set_transfer_data_size(dma_channel_config *config, int size);
-void channel_config_set_read_increment(dma_channel_config *config, bool increment);
-void channel_config_set_write_increment(dma_channel_config *config, bool increment);
-void channel_config_set_ring(dma_channel_config *config, bool write, uint size_bits);
-void channel_config_set_dreq(dma_channel_config *config, uint dreq);
-void channel_config_set_chain_to(dma_channel_config *config, uint chain_to);
+
+/* As in the SDK, these functions only set a member. */
+#define SET_MEMBER(function, type, member)                                                   \
+    static inline void channel_config_set_##function(dma_channel_config *config, type value) \
+    {                                                                                        \
+        config->member = value;                                                              \
+    }
+SET_MEMBER(transfer_data_size, uint, data_size)
+SET_MEMBER(read_increment, bool, read_increment)
+SET_MEMBER(write_increment, bool, write_increment)
+SET_MEMBER(dreq, uint, dreq)
+SET_MEMBER(chain_to, uint, chain_to)
+
+static inline void channel_config_set_ring(dma_channel_config *config, bool write, uint size_bits)
+{
+    config->ring_on_write = write;
+    config->ring_bits = size_bits;
+}
+
 void dma_channel_configure(uint channel, const dma_channel_config *config, volatile void *write,
                            const volatile void *read, uint32_t transfer_count, bool trigger);
 dma_channel_hw_t *dma_channel_hw_addr(uint channel);
