@@ -93,13 +93,9 @@ void tmini_packet_open(tmini_packet_t *packet, const tmini_frame_t *frame)
     packet->count = frame->header[LSN];
     packet->gap = frame->gap;
     packet->frame = frame;
-    uint32_t step = 0;
-    if (packet->count > 1) {
-        const uint32_t intervals = packet->count - 1u;
-        const uint32_t swept = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);
-        step = ((swept << STEP_BITS) + intervals - 1) / intervals;
-    }
-    packet->step = step;
+    const uint32_t intervals = packet->count - 1u;
+    const uint32_t swept = tmini_clockwise(packet->first_angle_q6, packet->last_angle_q6);
+    packet->step = intervals > 0 ? ((swept << STEP_BITS) + intervals - 1) / intervals : 0;
 }
 
 bool tmini_packet_point(const tmini_packet_t *packet, size_t index, tmini_point_t *point)
@@ -146,13 +142,13 @@ size_t tmini_packet_points(const tmini_packet_t *packet, unsigned filter, tmini_
 bool tmini_packet_has_range(const tmini_packet_t *packet)
 {
     const tmini_frame_t *const frame = packet->frame;
-    size_t sample = TMINI_SAMPLE_OFFSET(0);
+    size_t distance = TMINI_SAMPLE_OFFSET(0) + 1;
     for (unsigned left = packet->count; left > 0; left--) {
-        if (tmini_frame_peek(frame, sample + 1) > FLAG_MASK ||
-            tmini_frame_peek(frame, sample + 2) > 0) {
+        if (tmini_frame_peek(frame, distance) > FLAG_MASK ||
+            tmini_frame_peek(frame, distance + 1) > 0) {
             return true;
         }
-        sample += TMINI_SAMPLE_SIZE;
+        distance += TMINI_SAMPLE_SIZE;
     }
     return false;
 }
