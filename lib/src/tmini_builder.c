@@ -130,7 +130,7 @@ static void append_points(tmini_builder_t *builder, const tmini_packet_t *packet
     const size_t count = tmini_packet_points(packet, builder->filter, &scan->points[scan->count],
                                              (size_t)builder->capacity - scan->count);
     if (!tmini_frame_intact(packet->frame)) {
-        count_one(&scan->gaps);
+        tmini_builder_refute(builder);
         if (scan->packets == 0) { /* No scan is empty. */
             builder->open = false;
         }
@@ -164,7 +164,7 @@ void tmini_builder_discard(tmini_builder_t *builder)
     builder->origin_q6 = NO_ORIGIN;
 }
 
-void tmini_builder_refute(tmini_builder_t *builder)
+TMINI_NOINLINE void tmini_builder_refute(tmini_builder_t *builder)
 {
     count_one(&builder->scan.gaps);
 }
@@ -182,7 +182,7 @@ bool tmini_builder_add(tmini_builder_t *builder, const tmini_packet_t *packet, u
         angle += builder->swept_q6 + ahead;
         const bool goes_on = !is_start && continues(packet, ahead, angle);
         if (tmini_packet_misses(packet, packet->gap) || ahead > JUMP_Q6 || !(goes_on || is_start)) {
-            count_one(&builder->scan.gaps);
+            tmini_builder_refute(builder);
         }
         if (!goes_on) {
             finish(builder, packet, ahead, now_ms);
