@@ -105,7 +105,7 @@ static int quiesce(tmini_t *lidar)
                           quiet_timeout_ms(lidar));
 }
 
-TMINI_NOINLINE static int ask(tmini_t *lidar)
+static int ask(tmini_t *lidar)
 {
     lidar->command.asks++;
     return send_and_await(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);

@@ -38,11 +38,11 @@ TMINI_INLINE bool take_opened(tmini_decoder_t *decoder, uint32_t now_ms)
 bool tmini_decoder_take(tmini_decoder_t *decoder, bool is_doubtful, uint32_t now_ms,
                         uint16_t late_ms)
 {
+    tmini_builder_backdate(&decoder->builder, late_ms);
     tmini_packet_open(&decoder->packet, tmini_parser_frame(&decoder->parser));
     if (is_doubtful) {
         decoder->packet.gap = TMINI_GAP_UNKNOWN;
     }
-    tmini_builder_backdate(&decoder->builder, late_ms);
     return take_opened(decoder, now_ms);
 }
 
