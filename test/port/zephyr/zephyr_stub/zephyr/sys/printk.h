@@ -6,6 +6,6 @@
 #ifndef ZEPHYR_SYS_PRINTK_H
 #define ZEPHYR_SYS_PRINTK_H
 
-int printk(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int printk(const char *format, ...) __attribute__((format(__printf__, 1, 2)));
 
 #endif
