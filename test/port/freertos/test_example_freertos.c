@@ -21,12 +21,12 @@ void example_begin(void)
 void example_assert_stops(bool stops)
 {
     assert_last_said(stops ? ", STOP;" : ", go;");
+    TEST_ASSERT_EQUAL_UINT(TASKS_EXPECTED, tasks_count());
 }
 
 int example_play(void)
 {
     (void)example_main();
-    TEST_ASSERT_EQUAL_UINT(TASKS_EXPECTED, tasks_count());
     for (;;) {
         vTaskDelay(pdMS_TO_TICKS(100));
         story_go_on();
