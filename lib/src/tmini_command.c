@@ -105,9 +105,15 @@ static int quiesce(tmini_t *lidar)
                           quiet_timeout_ms(lidar));
 }
 
+/* Asks for the frequency, unless that has been in vain too often. */
 static int ask(tmini_t *lidar)
 {
-    lidar->command.asks++;
+    tmini_command_t *const command = &lidar->command;
+    if (command->asks >= ASKS_MAX) {
+        command->timeouts++;
+        return TMINI_ERROR_TIMEOUT;
+    }
+    command->asks++;
     return send_and_await(lidar, TMINI_COMMAND_GET_FREQUENCY, TMINI_PHASE_ASKING, ASK_EACH_MS);
 }
 
@@ -218,16 +224,6 @@ static bool is_quiet(const tmini_t *lidar)
            tmini_ring_head(&lidar->ring) == lidar->line.received;
 }
 
-/* A question in vain is repeated. */
-static int ask_again(tmini_t *lidar)
-{
-    if (lidar->command.asks < ASKS_MAX) {
-        return ask(lidar);
-    }
-    lidar->command.timeouts++;
-    return TMINI_ERROR_TIMEOUT;
-}
-
 /* The line is quiet: the next command may be sent (section 2). Bytes that came before a command
  * cannot be its reply, so all are skipped, including an incomplete packet. */
 static int on_quiet(tmini_t *lidar)
@@ -242,13 +238,13 @@ static int on_quiet(tmini_t *lidar)
         return TMINI_OK;
     case TMINI_EVENT_REBOOTED:
         if (command->asks > 0) {
-            return ask_again(lidar); /* It has been sent already. */
+            return ask(lidar); /* It has been sent already. */
         }
         tmini_command_forget_frequency(lidar);
         return send_and_await(lidar, TMINI_COMMAND_REBOOT, TMINI_PHASE_REBOOTING,
                               TMINI_REBOOT_TIME_MS);
     case TMINI_EVENT_FREQUENCY:
-        return has_answered ? step(lidar) : ask_again(lidar);
+        return has_answered ? step(lidar) : ask(lidar);
     case TMINI_EVENT_STARTED:
         code = TMINI_COMMAND_START;
         break;
@@ -282,7 +278,7 @@ static int on_time_out(tmini_t *lidar)
     switch (lidar->command.phase) {
     case TMINI_PHASE_ASKING:
     case TMINI_PHASE_REBOOTING:
-        return ask_again(lidar);
+        return ask(lidar);
     case TMINI_PHASE_STANDING: /* A blocked rotor is a fault; no attempt to start it helps. */
         return TMINI_SCANS;
     case TMINI_PHASE_PAUSING:
