@@ -73,33 +73,19 @@ static void arrive(uint32_t flags, uint8_t byte)
     idf.fifo_overflowed = (idf.is_routed && !machine_put(byte)) || idf.fifo_overflowed;
 }
 
-static bool keep(const uint8_t *bytes, size_t count)
-{
-    if (idf.buffer_size - idf.buffer_count < count) {
-        return false;
-    }
-    memcpy(&idf.buffer[idf.buffer_count], bytes, count);
-    idf.buffer_count += count;
-    return true;
-}
-
-/* While a stash waits, the driver switches this cause off. */
 static bool has_cause_to_read(void)
 {
-    return idf.stash_count == 0 && machine_must_read(idf.fifo_threshold, TIMEOUT_US);
+    return machine_must_read(idf.fifo_threshold, TIMEOUT_US);
 }
 
+/* What is announced when the buffer is full, the test of the calls plays. */
 static void empty_fifo(void)
 {
-    uint8_t bytes[FIFO_SIZE];
-    const size_t count = machine_read(bytes, sizeof bytes);
-    if (keep(bytes, count)) {
-        idf_post(UART_DATA, count);
-    } else {
-        memcpy(idf.stash, bytes, count);
-        idf.stash_count = count;
-        idf_post(UART_BUFFER_FULL, count);
-    }
+    uint8_t *const end = &idf.buffer[idf.buffer_count];
+    const size_t count = machine_read(end, FIFO_SIZE);
+    idf.buffer_count += count;
+    TEST_ASSERT_LESS_OR_EQUAL_MESSAGE(idf.buffer_size, idf.buffer_count, "the buffer is full");
+    idf_post(UART_DATA, count);
 }
 
 static bool is_up(void)
@@ -108,10 +94,8 @@ static bool is_up(void)
            (has_cause_to_read() || idf.fifo_overflowed);
 }
 
-/* ESP-IDF's interrupt handler moves the FIFO's bytes to its buffer. If they do not fit, it stashes
- * them, reports this once, and leaves the FIFO alone until the stash is read. After that it checks
- * for an overflow and resets the FIFO: bytes moved or stashed before are safe, the others are
- * lost. */
+/* ESP-IDF's interrupt handler moves the FIFO's bytes to its buffer. After that it checks for an
+ * overflow and resets the FIFO: bytes moved before are safe, the others are lost. */
 static void serve(void)
 {
     if (has_cause_to_read()) {
@@ -161,7 +145,6 @@ esp_err_t uart_driver_install(uart_port_t uart, int rx_buffer_size, int tx_buffe
         idf.buffer_count = 0;
         idf.queue_size = (size_t)queue_size;
         idf.queue_count = 0;
-        idf.stash_count = 0;
         machine.count = 0;
         idf.fifo_threshold = 120; /* ESP-IDF's default. */
         idf.fifo_overflowed = false;
@@ -200,7 +183,7 @@ OF_DRIVER(uart_enable_intr_mask, (uart_port_t uart, uint32_t mask),
           ("interrupts(%d,%d)", uart, (int)mask), 0)
 OF_DRIVER(uart_enable_rx_intr, (uart_port_t uart), ("receive(%d)", uart), idf.has_interrupts = true)
 OF_DRIVER(uart_flush_input, (uart_port_t uart), ("flush(%d)", uart), machine.count = 0,
-          idf.stash_count = 0, idf.buffer_count = 0)
+          idf.buffer_count = 0)
 
 esp_err_t uart_get_buffered_data_len(uart_port_t uart, size_t *size)
 {
@@ -219,17 +202,6 @@ static size_t take_from_buffer(uint8_t *bytes, size_t length)
     return count;
 }
 
-/* As soon as the buffer has room, the stashed bytes follow, also within one call. */
-static size_t read_bytes(uint8_t *bytes, size_t length)
-{
-    size_t count = take_from_buffer(bytes, length);
-    if (idf.stash_count > 0 && keep(idf.stash, idf.stash_count)) {
-        idf.stash_count = 0;
-        count += take_from_buffer(&bytes[count], length - count);
-    }
-    return count;
-}
-
 int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t ticks)
 {
     TEST_ASSERT_EQUAL(UART_NUM_1, uart);
@@ -237,7 +209,7 @@ int uart_read_bytes(uart_port_t uart, void *buffer, uint32_t length, TickType_t 
     TEST_ASSERT_NOT_EQUAL_UINT32(0, length);
     interrupt();
     const bool fails = !has_driver() || (idf.failing != NULL && strcmp(idf.failing, "read") == 0);
-    return fails ? -1 : (int)read_bytes(buffer, length);
+    return fails ? -1 : (int)take_from_buffer(buffer, length);
 }
 
 /* A failing call sends `idf.failure` bytes. */

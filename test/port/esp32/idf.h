@@ -52,17 +52,12 @@ typedef struct {
     unsigned stray_calls; /* Calls for a UART without a driver; should be 0. */
     size_t fifo_threshold;
     bool fifo_overflowed;
-    bool is_routed;      /* The receive pin. */
-    bool has_interrupts; /* The UART; other code could switch them off. */
-    uint64_t
-        held_until_us; /* No interrupt is served before, as during an operation on the flash. */
+    bool is_routed;         /* The receive pin. */
+    bool has_interrupts;    /* The UART; other code could switch them off. */
+    uint64_t held_until_us; /* No interrupt comes before, as during an operation on the flash. */
     uint8_t buffer[16384];
     size_t buffer_size;
     size_t buffer_count;
-    /* FIFO bytes that did not fit into the buffer. Until they are read, the FIFO keeps its
-     * bytes. */
-    uint8_t stash[MACHINE_FIFO_MAX];
-    size_t stash_count;
     uart_event_t queue[256];
     size_t queue_size;
     size_t queue_count;
