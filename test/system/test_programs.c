@@ -826,6 +826,43 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
     }
 }
 
+/* ---- Silences and pauses of any length: no scan has points of two turns ---- */
+
+/* Meanwhile the lidar turns on: what comes afterwards may seem to continue what came before. */
+void test_a_silence_of_any_length_mixes_no_turns(void)
+{
+    for (uint32_t ct = 0; ct <= 1; ct++) {
+        prepare(0);
+        lidar.ct_information = ct != 0;
+        play_steps("begin, start, within 5000");
+        for (uint32_t ms = 20; ms < 860; ms++) {
+            sim_befall(&bed.sim, SIM_SILENT, ms, bed.now_us);
+            bed_run_ms(&bed, ms + 250);
+        }
+        play_steps("within 2000");
+        expect_good_behaviour(ct);
+    }
+}
+
+/* The ring overflows during most of them, also again after a short look at it. */
+void test_pauses_of_the_program_of_any_length_mix_no_turns(void)
+{
+    for (uint32_t kind = 0; kind < 9; kind++) {
+        prepare(0);
+        bed.config.rx_size = (size_t)256 << (kind + 1) / 2;
+        bed.config.rx_dma = kind % 2 != 0;
+        play_steps("may lose 1, begin, start, within 5000");
+        for (uint32_t ms = 5; ms < 700; ms += 7) {
+            bed_pause_ms(&bed, ms);
+            bed_run_ms(&bed, ms % 3);
+            bed_pause_ms(&bed, ms * 5 % 300);
+            bed_run_ms(&bed, 400);
+        }
+        play_steps("within 5000");
+        expect_good_behaviour(kind);
+    }
+}
+
 /* ---- Faults of the line, at several rates ---- */
 
 /* A minute of such faults, then none: scans must resume. */

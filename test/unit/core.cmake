@@ -26,18 +26,3 @@ tmini_add_unit_test(test_fields SOURCES test_fields.c
 tmini_add_unit_test(test_isolated SOURCES test_isolated.c)
 tmini_add_unit_test(test_time SOURCES test_time.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_units SOURCES test_units.c)
-
-# Ring and parser are compiled again here, with an atomic header that calls the test at each access
-# of an index.
-tmini_add_unit_test(test_interrupts
-    SOURCES test_interrupts.c ${PROJECT_SOURCE_DIR}/lib/src/tmini_ring.c
-        ${PROJECT_SOURCE_DIR}/lib/src/tmini_parser.c
-    LIBRARIES tmini_test_receiver)
-if(TARGET test_interrupts)
-    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-        target_compile_definitions(test_interrupts PRIVATE TMINI_WORD_ALIGNMENT=4u)
-    endif()
-    target_compile_definitions(test_interrupts
-        PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
-    target_include_directories(test_interrupts PRIVATE ../support)
-endif()

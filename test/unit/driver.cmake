@@ -26,20 +26,20 @@ if(TARGET test_line)
     target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
 
-# The driver with a lidar that turns (turns.h), on a port that records the commands.
-tmini_add_unit_test(test_honest_scans SOURCES test_honest_scans.c ../support/turns.c
-    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
-
-# The same, with the library compiled again with an atomic header that calls the test at each access
-# of an index.
+# The library is compiled again here, with an atomic header that calls the test at each access of an
+# index.
 file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/src/*.c)
-tmini_add_unit_test(test_honest_moments
-    SOURCES test_honest_moments.c ../support/turns.c ${library_sources}
-    LIBRARIES tmini_test_support NOT_ON int16)
-if(TARGET test_honest_moments)
-    target_compile_definitions(test_honest_moments
+tmini_add_unit_test(test_interrupts
+    SOURCES test_interrupts.c ../support/tale.c ../support/rig.c ../support/invariants.c
+        ${library_sources}
+    LIBRARIES tmini_test_rows tmini_test_receiver)
+if(TARGET test_interrupts)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        target_compile_definitions(test_interrupts PRIVATE TMINI_WORD_ALIGNMENT=4u)
+    endif()
+    target_compile_definitions(test_interrupts
         PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
-    target_include_directories(test_honest_moments PRIVATE ../support)
+    target_include_directories(test_interrupts PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
 
 # The library is compiled again without CT information.

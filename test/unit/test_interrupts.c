@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Ring and parser are interrupted by the other side before or after any access of an index that
- * both use. Both are compiled here with interrupting_atomic.h. */
+/* Ring, parser and driver are interrupted by the other side before or after any access of an index
+ * that both use. The library is compiled here with interrupting_atomic.h. */
 
 #include "interrupting_atomic.h"
 #include "receiver.h"
 #include "stream.h"
+#include "tale.h"
 
 #include "unity.h"
 
@@ -20,6 +21,7 @@ static receiver_t receiver;
 static void (*handler)(void); /* Called at each access; NULL: interrupts are off. */
 static unsigned accesses;     /* Since the call began. */
 static unsigned chosen;       /* The access at which the handler acts. */
+static bool has_come;         /* It has acted. */
 
 void interrupt(void)
 {
@@ -210,7 +212,6 @@ void test_the_readers_index_is_looked_at_once_a_lap(void)
 /* At the chosen access, DMA writes `lap_size` bytes at once. */
 static uint8_t lap[256];
 static size_t lap_size;
-static bool has_come;
 
 static void lap_comes(void)
 {
@@ -292,4 +293,194 @@ void test_the_last_packet_that_half_a_ring_holds_is_delivered(void)
         TEST_ASSERT_EQUAL_INT(TMINI_FRAME_PACKET, next_with(lap_comes));
         TEST_ASSERT_TRUE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
     }
+}
+
+/* ------------------------------------------------------------------------- polls of the driver */
+
+static tmini_event_t poll_with(void (*come)(void))
+{
+    accesses = 0;
+    has_come = false;
+    handler = come;
+    const tmini_event_t event = tmini_poll(&rig.lidar);
+    handler = NULL;
+    return event;
+}
+
+/* Turn 1 is packets 10 to 19: a start packet, and nine of twelve samples, 46 bytes each, of which
+ * the ring holds five. The distance of all samples shows their turn. */
+#define PACKETS 10u
+#define POINTS 109
+
+static tmini_point_t points[POINTS];
+static unsigned complete;
+
+static void open_scanning(void)
+{
+    tale_begin();
+    rig.config.points = points;
+    rig.config.max_points = POINTS;
+    tale_tell("scans");
+    complete = 0;
+}
+
+static void feed_packets(unsigned first, unsigned last)
+{
+    for (unsigned number = first; number <= last; number++) {
+        const unsigned index = number % PACKETS;
+        const unsigned from = index == 0 ? 0 : 1 + 12 * (index - 1);
+        encode_sample_t samples[12];
+        const encode_packet_t packet = {.ct = index == 0 ? 0x79 : 0,
+                                        .lsn = index == 0 ? 1 : 12,
+                                        .first_q6 = (uint16_t)(from * 211),
+                                        .last_q6 = (uint16_t)((index == 0 ? 0 : from + 11) * 211),
+                                        .samples = samples};
+        for (unsigned i = 0; i < 12; i++) {
+            samples[i] = (encode_sample_t){(uint16_t)(100 + number / PACKETS), 1, 0};
+        }
+        rig_feed(bytes, encode_packet(bytes, &packet));
+    }
+}
+
+/* Polls; returns how many scans have points of two turns. */
+static unsigned mixed_scans(unsigned polls, void (*come)(void))
+{
+    unsigned mixed = 0;
+    for (; polls > 0; polls--) {
+        if (poll_with(come) == TMINI_EVENT_SCAN) {
+            const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
+            mixed += points[0].distance_mm != points[scan->count - 1].distance_mm ? 1 : 0;
+            complete += scan->complete ? 1 : 0;
+        }
+    }
+    return mixed;
+}
+
+static unsigned pass_packets(unsigned first, unsigned last)
+{
+    unsigned mixed = 0;
+    for (unsigned number = first; number <= last; number++) {
+        feed_packets(number, number);
+        mixed += mixed_scans(3, NULL);
+    }
+    return mixed;
+}
+
+/* The ring has no room for it. */
+static void a_turn_comes(void)
+{
+    if (accesses == chosen) {
+        feed_packets(19, 28);
+        has_come = true;
+    }
+}
+
+/* The ring is full of packets of turn 1, which the poll releases one by one. The first packet after
+ * the overflow, of turn 2, continues them at the right angle. */
+void test_an_overflow_at_any_moment_of_a_poll_mixes_no_turns(void)
+{
+    bool came = true;
+    for (chosen = 1; came; chosen++) {
+        open_scanning();
+        (void)pass_packets(10, 13);
+        feed_packets(14, 18);
+        unsigned mixed = mixed_scans(1, a_turn_comes);
+        came = has_come;
+        mixed += pass_packets(29, 60);
+        TEST_ASSERT_TRUE(!came || (mixed == 0 && complete >= 2));
+    }
+    TEST_ASSERT_TRUE(chosen > 10);
+}
+
+static unsigned next_packet;
+
+/* A few bytes find no room. */
+static void packets_come_one_by_one(void)
+{
+    if (accesses % 3 == chosen % 3 && next_packet < 70) {
+        feed_packets(next_packet, next_packet);
+        next_packet++;
+    }
+}
+
+void test_overflow_after_overflow_during_polls_mixes_no_turns(void)
+{
+    for (chosen = 0; chosen < 3; chosen++) {
+        open_scanning();
+        feed_packets(9, 9); /* Work for the first poll. */
+        next_packet = 10;
+        TEST_ASSERT_EQUAL_UINT(0, mixed_scans(200, packets_come_one_by_one));
+        TEST_ASSERT_EQUAL_UINT(70, next_packet);
+    }
+}
+
+/* ---- DMA overwrites an intact reply before it is copied ---- */
+
+static size_t written;
+
+static void dma_writes(const uint8_t *more, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        rig.rx[written++ % sizeof rig.rx] = more[i];
+    }
+    tmini_feed_dma(&rig.lidar, written % sizeof rig.rx);
+}
+
+static void dma_laps(void)
+{
+    if (accesses == chosen) {
+        memset(lap, 0x77, sizeof lap);
+        dma_writes(lap, 250);
+        has_come = true;
+    }
+}
+
+/* The reply is taken if it comes again and is not overwritten. */
+void test_a_reply_that_dma_overwrites_before_it_is_copied_is_no_answer(void)
+{
+    static const encode_information_t information = {
+        151, 1, 2, 1, {2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4}};
+    uint8_t reply[ENCODE_REPLY_MAX];
+    const size_t size = encode_information_reply(reply, &information);
+    chosen = 0;
+    do {
+        tale_begin();
+        tale_tell("dma samples:39 idle info >90");
+        written = 0;
+        dma_writes(reply, size);
+        chosen++;
+        if (poll_with(dma_laps) != TMINI_EVENT_INFO) {
+            dma_writes(reply, size);
+            tale_tell("!INFO");
+        }
+        TEST_ASSERT_EQUAL_UINT8(151, tmini_info(&rig.lidar)->model);
+        TEST_ASSERT_EQUAL_UINT8_ARRAY(information.serial, tmini_info(&rig.lidar)->serial, 16);
+    } while (has_come);
+    TEST_ASSERT_TRUE(chosen > 3);
+}
+
+/* ---- A poll's work is bounded by the bytes in the ring when it began ---- */
+
+/* A producer that never pauses: false headers, each of which might be a packet of 80 samples. */
+static void false_headers_come(void)
+{
+    static const uint8_t header[10] = {0xAA, 0x55, 0x00, 0x50, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00};
+    if (fed < 30000) {
+        rig_feed_byte(header[fed % 10]);
+        fed++;
+    }
+}
+
+void test_a_producer_that_never_pauses_does_not_prolong_a_poll(void)
+{
+    tmini_counters_t counters;
+    open_scanning();
+    fed = 0;
+    while (fed < RIG_RX_SIZE) {
+        false_headers_come();
+    }
+    (void)poll_with(false_headers_come);
+    tmini_counters(&rig.lidar, &counters);
+    TEST_ASSERT_TRUE_MESSAGE(counters.bytes_skipped <= RIG_RX_SIZE,
+                             "more was looked at than lay in the ring");
 }
