@@ -5,8 +5,6 @@
 
 #include "tmini_packet_header.h"
 
-enum verdict { NOT_A_FRAME, INCOMPLETE, COMPLETE };
-
 /* The start signs (sections 4 and 5): in both, the second byte is the first one, inverted. */
 enum { PACKET_FIRST = 0xAA, REPLY_FIRST = 0xA5, INVERTED = 0xFF };
 
@@ -54,7 +52,7 @@ static unsigned xor_blocks(const uint8_t *sample, size_t blocks)
     } while (--blocks > 0);
     first ^= second << 8 | second >> 24;
     const uint32_t low = (first ^ first >> 24 ^ third >> 8) & 0xFFu;
-    return (unsigned)((low ^ first >> 8 ^ third << 8 ^ third >> 16) & 0xFFFFu);
+    return (unsigned)(low ^ first >> 8 ^ third << 8 ^ third >> 16);
 }
 
 /* The same for contiguous samples, most of them by blocks. If the address is `ahead` bytes above a
@@ -80,13 +78,12 @@ static unsigned xor_piece(const uint8_t *sample, size_t count)
 typedef char
     header_is_aligned[offsetof(tmini_frame_t, header) % TMINI_WORD_ALIGNMENT == 0 ? 1 : -1];
 
-/* XORs all 16-bit words of the candidate, including the checksum: the result is 0 if that is
- * right. */
+/* XORs all 16-bit words of the candidate after the start sign, including the checksum: if that is
+ * right, the result is the start sign. */
 static bool checksum_matches(const tmini_frame_t *frame)
 {
     const uint32_t words = tmini_word(frame->header) ^ tmini_word(&frame->header[4]);
-    unsigned sum = (unsigned)((words ^ words >> 16) & 0xFFFFu) ^
-                   (PACKET_FIRST | (PACKET_FIRST ^ INVERTED) << 8);
+    unsigned sum = (unsigned)(words ^ words >> 16);
     size_t left = frame->header[LSN];
     while (left > 0) {
         const size_t done = frame->header[LSN] - left;
@@ -96,7 +93,7 @@ static bool checksum_matches(const tmini_frame_t *frame)
         sum ^= xor_piece(samples, count);
         left -= count;
     }
-    return sum == 0;
+    return (sum & 0xFFFFu) == (PACKET_FIRST | (PACKET_FIRST ^ INVERTED) << 8);
 }
 
 /* --------------------------------------------------------------------------------- candidates */
@@ -140,69 +137,66 @@ static void read_header(tmini_frame_t *frame)
     }
 }
 
-static enum verdict classify_packet_header(tmini_parser_t *parser)
+static bool take_packet_header(tmini_parser_t *parser)
 {
     if (!packet_header_is_plausible(parser)) {
-        return NOT_A_FRAME;
+        return false;
     }
     parser->kind = TMINI_FRAME_PACKET;
     parser->need = (uint16_t)TMINI_PACKET_SIZE(parser->frame.header[LSN]);
-    return COMPLETE;
+    return true;
 }
 
-static enum verdict classify_reply_header(tmini_parser_t *parser)
+static bool take_reply_header(tmini_parser_t *parser)
 {
     if (!reply_header_is_awaited(parser)) {
-        return NOT_A_FRAME;
+        return false;
     }
     parser->kind = TMINI_FRAME_REPLY;
     parser->need = (uint16_t)(TMINI_REPLY_HEADER_SIZE + parser->awaited.length);
-    return COMPLETE;
+    return true;
 }
 
-/* Checks the candidate's start sign, then its header, as soon as these bytes have come. */
-static enum verdict classify_header(tmini_parser_t *parser, size_t unread)
+/* Judges the candidate's start sign, then its header, as soon as these bytes have come, and sets
+ * how many bytes it needs before more can be said. False: no frame begins here. */
+static bool judge_header(tmini_parser_t *parser, size_t unread)
 {
     const tmini_ring_t *const ring = parser->frame.ring;
     const uint8_t first = tmini_ring_peek(ring, 0);
     const bool is_packet = first == PACKET_FIRST;
+    const uint16_t size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
     if (begins_no_frame(parser, first)) {
-        return NOT_A_FRAME;
+        return false;
     }
     if (unread < 2) {
         parser->need = 2;
-        return INCOMPLETE;
+        return true;
     }
     if ((first ^ tmini_ring_peek(ring, 1)) != INVERTED) {
-        return NOT_A_FRAME;
+        return false;
     }
-    const uint16_t size = is_packet ? TMINI_PACKET_HEADER_SIZE : TMINI_REPLY_HEADER_SIZE;
     if (unread < size) {
         parser->need = size;
-        return INCOMPLETE;
+        return true;
     }
     read_header(&parser->frame);
-    return is_packet ? classify_packet_header(parser) : classify_reply_header(parser);
+    return is_packet ? take_packet_header(parser) : take_reply_header(parser);
 }
 
-/* Decides what the ring's oldest bytes are. If they are a complete frame, it has `need` bytes. */
-static enum verdict classify(tmini_parser_t *parser, size_t unread)
+/* Judges the ring's oldest bytes. If `need` of them have come, they are a frame. False: no frame
+ * begins here. */
+static bool judge(tmini_parser_t *parser, size_t unread)
 {
-    if (parser->kind == TMINI_FRAME_NONE) {
-        const enum verdict verdict = classify_header(parser, unread);
-        if (verdict != COMPLETE) {
-            return verdict;
-        }
+    if (parser->kind == TMINI_FRAME_NONE && !judge_header(parser, unread)) {
+        return false;
     }
-    if (unread < parser->need) {
-        return INCOMPLETE;
-    }
-    if (parser->kind == TMINI_FRAME_PACKET && !checksum_matches(&parser->frame)) {
+    if (parser->kind == TMINI_FRAME_PACKET && unread >= parser->need &&
+        !checksum_matches(&parser->frame)) {
         parser->counters.checksum_errors++;
         parser->effort = (uint16_t)(parser->effort + parser->need);
-        return NOT_A_FRAME;
+        return false;
     }
-    return COMPLETE;
+    return true;
 }
 
 /* The next candidate is examined from its first byte. */
@@ -248,7 +242,7 @@ static void skip(tmini_parser_t *parser, size_t unread)
 static void drop_overwritten(tmini_parser_t *parser, size_t ahead)
 {
     tmini_ring_t *const ring = parser->frame.ring;
-    const size_t fresh = ahead < ring->size ? ahead : ahead & (ring->size - 1);
+    const size_t fresh = ahead & (ring->size - 1);
     const size_t kept = fresh < ring->window ? fresh : ring->window;
     const size_t lost = ahead - kept;
     tmini_ring_discard(ring, lost);
@@ -335,10 +329,9 @@ tmini_frame_type_t tmini_parser_next_after(tmini_parser_t *parser, size_t effort
                 continue;
             }
         }
-        const enum verdict verdict = classify(parser, unread);
-        if (verdict == NOT_A_FRAME) {
+        if (!judge(parser, unread)) {
             skip(parser, unread);
-        } else if (verdict == COMPLETE && tmini_frame_intact(&parser->frame)) {
+        } else if (unread >= parser->need && tmini_frame_intact(&parser->frame)) {
             return deliver(parser);
         }
     } while (parser->effort < TMINI_PARSER_EFFORT);
