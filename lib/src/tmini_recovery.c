@@ -91,8 +91,8 @@ tmini_event_t tmini_recovery_first(unsigned events)
 static unsigned wishes_beside_ladder(const tmini_t *lidar)
 {
     const unsigned by_ladder = BIT(TMINI_EVENT_STARTED) | BIT(TMINI_EVENT_FREQUENCY);
-    const bool is_to_scan = tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED);
-    return lidar->recovery.wishes & ~(is_to_scan ? by_ladder : 0);
+    const unsigned wishes = lidar->recovery.wishes;
+    return tmini_recovery_wishes(lidar, TMINI_EVENT_STARTED) ? wishes & ~by_ladder : wishes;
 }
 
 bool tmini_recovery_is_step(const tmini_t *lidar, tmini_event_t operation)
@@ -127,7 +127,7 @@ void tmini_recovery_go_on(tmini_t *lidar, tmini_event_t ended)
         }
         operation = next_attempt(lidar, ended);
         note_step(lidar, operation);
-        if (!lidar->is_recovery_off && operation != TMINI_EVENT_REBOOTED) {
+        if (!lidar->is_recovery_off) {
             attempts = 1; /* The ladder repeats it. */
         }
     }
