@@ -131,12 +131,14 @@ static tmini_turn_t go_on(tmini_monitor_t *monitor, const tmini_packet_t *packet
     if (monitor->samples < TURN_SAMPLES_MAX) {
         return TMINI_TURN_GOES_ON;
     }
-    const bool turns =
-        monitor->ranges >= TURNING_RANGES && (monitor->faults & TMINI_FAULT_ENCODER) != 0;
+    tmini_turn_t turn = TMINI_TURN_GOES_ON;
+    if (monitor->ranges >= TURNING_RANGES && (monitor->faults & TMINI_FAULT_ENCODER) != 0) {
+        turn = TMINI_TURN_ENDLESS;
+    }
     monitor->faults |= TMINI_FAULT_ENCODER;
     monitor->observed = monitor->faults;
     begin_revolution(monitor);
-    return turns ? TMINI_TURN_ENDLESS : TMINI_TURN_GOES_ON;
+    return turn;
 }
 
 static tmini_turn_t end_revolution(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
