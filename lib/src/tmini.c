@@ -88,8 +88,10 @@ static tmini_event_t take_event(tmini_t *lidar)
  * think that they end this one. */
 static void drop_events(tmini_t *lidar, unsigned events)
 {
-    const unsigned failure = tmini_command_is_busy(lidar) ? 0 : BIT(TMINI_EVENT_COMMAND_FAILED);
-    lidar->pending = (uint16_t)(lidar->pending & ~(events | failure));
+    if (!tmini_command_is_busy(lidar)) {
+        events |= BIT(TMINI_EVENT_COMMAND_FAILED);
+    }
+    lidar->pending = (uint16_t)(lidar->pending & ~events);
 }
 
 static void fail(tmini_t *lidar, int status)
@@ -200,9 +202,9 @@ static void climb(tmini_t *lidar, tmini_event_t operation, tmini_phase_t phase, 
 {
     bool goes_on = result == TMINI_OK;
     if (operation == TMINI_EVENT_FREQUENCY) {
-        const bool is_silent = phase == TMINI_PHASE_ASKING && result == TMINI_ERROR_TIMEOUT;
         end_frequency(lidar, result);
-        goes_on = !is_silent || tmini_recovery_note_silence(lidar);
+        goes_on = phase != TMINI_PHASE_ASKING || result != TMINI_ERROR_TIMEOUT ||
+                  tmini_recovery_note_silence(lidar);
     }
     if (goes_on) {
         tmini_recovery_go_on(lidar, operation);
@@ -462,16 +464,17 @@ static bool give_up_candidate(tmini_t *lidar)
 }
 
 /* Handles frames until there is an event or none is left. Returns false if that takes more work
- * than one poll may do. */
+ * than one poll may do. The frame handled last is counted before the next one is sought; also one
+ * of an earlier poll, because a packet that has ended a scan is decoded again. */
 static bool receive(tmini_t *lidar)
 {
-    const tmini_decoder_t *const decoder = &lidar->decoder;
-    const tmini_parser_t *const parser = &decoder->parser;
+    const tmini_parser_t *const parser = &lidar->decoder.parser;
     size_t effort = 0;
-    if (decoder->builder.ended) { /* The packet that ended the scan is decoded again. */
-        effort = FRAME_EFFORT + tmini_parser_frame(parser)->size;
-    }
     while (lidar->pending == 0) {
+        effort += FRAME_EFFORT + tmini_parser_frame(parser)->size;
+        if (effort >= TMINI_PARSER_EFFORT) {
+            return false;
+        }
         const tmini_frame_type_t type = tmini_decoder_next(&lidar->decoder, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
@@ -480,10 +483,7 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
-        effort = FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size;
-        if (effort >= TMINI_PARSER_EFFORT) {
-            return false;
-        }
+        effort = parser->effort;
     }
     return true;
 }
@@ -642,7 +642,7 @@ tmini_status_t tmini_init(tmini_t *lidar, const tmini_config_t *config)
     *lidar = (tmini_t){0}; /* State unknown, no phase, no CT information. */
     if (config == NULL || !has_port(config) || !fits_together(config) ||
         !init_frequency(lidar, config) || !init_modules(lidar, config)) {
-        lidar->ring = (tmini_ring_t){0}; /* It refuses bytes. */
+        lidar->ring.size = 0; /* It refuses bytes. */
         fail(lidar, TMINI_ERROR_ARGUMENT);
         return TMINI_ERROR_ARGUMENT;
     }
