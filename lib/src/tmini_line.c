@@ -150,7 +150,10 @@ static uint32_t follow_clock(tmini_line_t *line, uint32_t clock_ms, size_t arriv
         }
         return 0;
     }
-    line->now_ms = clock_ms != 0 ? clock_ms : 1; /* 0 means: never looked. The clock catches up. */
+    line->now_ms = clock_ms;
+    if (clock_ms == 0 && passed_ms > 0) {
+        line->now_ms = 1; /* 0 means: never looked. The clock catches up. */
+    }
     return passed_ms;
 }
 
