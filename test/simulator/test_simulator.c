@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Compares the simulated lidar's bytes with docs/protocol.md. The check `recordings` compares those
- * of a healthy one with test/recordings. They come over the faulty wire, which makes the faults
- * asked for, and reports them correctly. */
+/* Compares the simulated lidar's bytes with docs/protocol.md. host.decode compares those of a
+ * healthy one with test/recordings. They come over the faulty wire, which makes the faults asked
+ * for, and reports them correctly. */
 
 #include "link.h"
 #include "members.h"
