@@ -463,9 +463,16 @@ void test_a_terminal_for_typing_becomes_a_line_for_bytes(void)
     close(master);
 }
 
-void test_a_device_is_started_again_after_it_was_stopped(void)
+/* A device that is started twice is open once: its first descriptor is free again. */
+void test_only_between_start_and_stop_something_is_received_or_sent(void)
 {
+    static const uint8_t stop[2] = {0xA5, 0x65};
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));
+    TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stop, sizeof stop));
     begin();
+    const int first = port.fd;
+    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(first, port.fd);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
     tmini_posix_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));
@@ -474,35 +481,7 @@ void test_a_device_is_started_again_after_it_was_stopped(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
 }
 
-void test_a_device_started_twice_is_open_once(void)
-{
-    begin();
-    const int first = port.fd;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(first, port.fd); /* The first one was closed: its number is free. */
-}
-
-void test_before_it_is_started_nothing_is_received_or_sent(void)
-{
-    static const uint8_t stop[2] = {0xA5, 0x65};
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));
-    TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stop, sizeof stop));
-}
-
 /* ---- Receiving ---- */
-
-void test_the_blocking_helpers_work(void)
-{
-    uint16_t frequency_chz = 0;
-    begin();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_read_frequency(&lidar, &frequency_chz, 8000));
-    TEST_ASSERT_EQUAL_UINT16(600, frequency_chz);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_start(&lidar, 8000));
-    poll_until(TMINI_EVENT_SCAN);
-    TEST_ASSERT_TRUE(tmini_scan(&lidar)->complete && tmini_scan(&lidar)->count > 600);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_blocking_stop(&lidar, 2000));
-}
 
 static void tap(void *context, const uint8_t *bytes, size_t count)
 {
@@ -532,23 +511,17 @@ void test_a_line_without_counters_has_no_errors(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters.parity_errors);
 }
 
+/* With a lidar as many as it has room for, without one in blocks. */
 void test_bytes_that_have_waited_are_handed_over_at_once(void)
 {
     static const uint8_t bytes[700];
     init_lidar(false);
-    const int other = start_on_pair(&lidar, bytes, sizeof bytes);
-    receive(sizeof bytes);
-    close(other);
-}
-
-void test_without_a_lidar_bytes_are_received_in_blocks(void)
-{
-    static const uint8_t bytes[300];
-    const int other = start_on_pair(NULL, bytes, sizeof bytes);
+    close(start_on_pair(NULL, bytes, 300));
     receive(128);
     receive(256);
     receive(300);
-    close(other);
+    close(start_on_pair(&lidar, bytes, sizeof bytes));
+    receive(sizeof bytes);
 }
 
 void test_bytes_without_room_stay_with_the_system_and_are_not_waited_for(void)
@@ -637,18 +610,13 @@ void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 0));
 }
 
-void test_silence_is_no_error(void)
+void test_a_failure_to_wait_for_bytes_is_an_error_but_silence_and_a_signal_are_not(void)
 {
     begin();
     const uint64_t begun_us = now_us;
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 20));
     TEST_ASSERT_UINT64_WITHIN(1000, 20000, now_us - begun_us);
     TEST_ASSERT_EQUAL_UINT64(0, port.received);
-}
-
-void test_a_failure_to_wait_for_bytes_is_an_error_but_a_signal_is_not(void)
-{
-    begin();
     poll_fails_ms = 7;
     poll_error = EINTR;
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 100));
