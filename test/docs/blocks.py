@@ -58,6 +58,7 @@ BOARD = [*C, *prelude("board")]
 
 # Compiler options for each document, or for one of its sections; BOARD for all others.
 CONTEXTS = {
+    "README.md#On Arduino": ARDUINO,
     "examples/mavlink/README.md": [*BOARD, "-Iexamples/mavlink", "-DUSART2=USART1"],
     "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
     "examples/stm32_cube/README.md": [*C, *HAL, *prelude("cube")],
