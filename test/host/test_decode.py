@@ -88,7 +88,7 @@ def test_a_recording_can_come_from_standard_input(tmini):
 # ---- Scans
 
 
-# Packets, start packets, points, skipped bytes and wrong checksums; and the scans as points/packets/frequency in 0.1 Hz,
+# Packets, start packets, points, skipped bytes, wrong checksums; and the scans as points/packets/frequency in 0.1 Hz,
 # or as a part with its gaps. Known from tmini-sim's own report and, for a real unit, from the recording's description.
 RECORDED = {
     "manual-packet.bin": ((1, 0, 19, 0, 0), ""),

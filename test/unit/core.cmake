@@ -23,6 +23,6 @@ tmini_add_unit_test(test_mount SOURCES test_mount.c)
 tmini_add_unit_test(test_cartesian SOURCES test_cartesian.c)
 tmini_add_unit_test(test_fields SOURCES test_fields.c
     LIBRARIES tmini_test_rows tmini_test_support)
-tmini_add_unit_test(test_isolated SOURCES test_isolated.c)
+tmini_add_unit_test(test_isolated SOURCES test_isolated.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_time SOURCES test_time.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_units SOURCES test_units.c)

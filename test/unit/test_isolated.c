@@ -3,164 +3,101 @@
 
 /* Isolated points, and several steps in their order. */
 
+#include "rows.h"
+
 #include "tmini/tmini_isolated.h"
 #include "tmini/tmini_mount.h"
 #include "tmini/tmini_steps.h"
 #include "unity.h"
 
-static tmini_point_t points[300];
+#include <stdlib.h>
+#include <string.h>
+
+#define POINTS 300
+
+static tmini_point_t points[POINTS];
+static bool is_isolated[POINTS]; /* As the row says. */
 static tmini_scan_t scan;
+static tmini_isolated_t isolated;
 
 void setUp(void)
 {
+    memset(points, 0, sizeof points);
     scan = (tmini_scan_t){.points = points};
+    isolated = (tmini_isolated_t){0};
 }
 
 void tearDown(void) {}
 
-/* Points are a degree apart. */
-static void add(uint16_t distance_mm)
+/* Words of the rows. At 1 m points a degree apart are 17.4 mm apart.
+ *
+ *     1000 1000!      points with this distance, a degree apart; with "!", it loses its range
+ *     1000@180        at this angle
+ *     near:5 percent:2    values that are given
+ *     step            what has been told happens to the scan; another one may follow */
+
+static void step(void)
 {
-    points[scan.count] = (tmini_point_t){(uint16_t)(scan.count * 64u), distance_mm, 7, 2};
-    scan.count++;
+    tmini_point_t expected[POINTS];
+    memcpy(expected, points, sizeof points);
+    for (unsigned i = 0; i < scan.count; i++) {
+        expected[i].distance_mm = is_isolated[i] ? 0 : points[i].distance_mm;
+    }
+    tmini_isolated_step(isolated.near_mm > 0 ? &isolated : NULL, &scan);
+    for (unsigned i = 0; i < POINTS; i++) {
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(expected[i].distance_mm, points[i].distance_mm, "range");
+        TEST_ASSERT_EQUAL_MEMORY(&expected[i], &points[i], sizeof points[i]);
+    }
+    scan.count = 0;
 }
 
-static void has(size_t index, uint16_t distance_mm)
+static void tell_word(char *word)
 {
-    TEST_ASSERT_EQUAL_UINT16(distance_mm, points[index].distance_mm);
-}
-
-/* At 1 m points a degree apart are 17.4 mm apart. */
-typedef struct {
-    uint16_t distances_mm[5]; /* The last ones far away from the first. */
-    uint16_t left_mm;         /* Of the third one. */
-} case_t;
-
-static void check_cases(const tmini_isolated_t *isolated, const case_t *cases, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        setUp();
-        for (size_t j = 0; j < 5; j++) {
-            add(cases[i].distances_mm[j]);
-        }
-        tmini_isolated_step(isolated, &scan);
-        TEST_ASSERT_EQUAL_UINT16_MESSAGE(cases[i].left_mm, points[2].distance_mm, "of the case");
-        TEST_ASSERT_EQUAL_UINT16(128, points[2].angle_q6);
-        TEST_ASSERT_EQUAL_UINT8(7, points[2].intensity);
-        TEST_ASSERT_EQUAL_UINT8(2, points[2].flag);
+    char *rest;
+    const uint16_t distance_mm = (uint16_t)strtoul(word, &rest, 10);
+    if (row_is(word, "near")) {
+        isolated.near_mm = (uint16_t)row_number(word);
+    } else if (row_is(word, "percent")) {
+        isolated.percent = (uint8_t)row_number(word);
+    } else if (row_is(word, "step")) {
+        step();
+    } else {
+        const unsigned degrees =
+            rest[0] == '@' ? (unsigned)strtoul(rest + 1, &rest, 10) : scan.count;
+        is_isolated[scan.count] = rest[0] == '!';
+        points[scan.count++] = (tmini_point_t){(uint16_t)(degrees * 64u), distance_mm, 7, 2};
     }
 }
 
-void test_a_point_without_a_near_neighbour_loses_its_range(void)
-{
-    static const case_t cases[] = {
-        {{3000, 3000, 1000, 3000, 3000}, 0},
-        {{0, 0, 1000, 0, 0}, 0},
-        {{0, 0, 0, 0, 0}, 0},
-        {{3000, 1000, 1000, 3000, 3000}, 1000}, /* One neighbour on either side is enough, */
-        {{3000, 3000, 1000, 1000, 3000}, 1000},
-        {{1000, 3000, 1000, 3000, 3000}, 1000}, /* also the next but one. */
-        {{3000, 3000, 1000, 3000, 1000}, 1000},
-        {{3000, 3000, 1, 3000, 3000}, 0},
-        {{3000, 1, 1, 3000, 3000}, 1},
-        {{3000, 0, 40, 3000, 3000}, 0},         /* No range is not near. */
-        {{3000, 1093, 1000, 3000, 3000}, 1000}, /* 50 mm + 6 % of 1000 mm - 17 mm = 93 mm */
-        {{3000, 1094, 1000, 3000, 3000}, 0},
-        {{3000, 908, 1000, 3000, 3000}, 0}, /* 6 % of 908 mm are less. */
-        {{3000, 915, 1000, 3000, 3000}, 1000},
-    };
-    check_cases(NULL, cases, sizeof cases / sizeof cases[0]);
-}
+static const row_t rows[] IN_FLASH = {
+    ROW(a_point_without_a_near_neighbour_loses_its_range,
+        "3000 3000 1000! 3000 3000 step 0 0 1000! 0 0 step 0 0 0 0 0 step 3000 3000 1! 3000 3000 "
+        "step"),
+    ROW(one_neighbour_on_either_side_is_enough, /* Also the next but one. */
+        "3000 1000 1000 3000 3000 step 3000 3000 1000 1000 3000 step 1000 3000 1000 3000 3000 step "
+        "3000 3000 1000 3000 1000 step 3000 1 1 3000 3000 step"),
+    ROW(no_range_is_not_near, "3000 0 40! 3000 3000 step"),
+    ROW(near_is_50_mm_and_6_percent_less_what_the_angle_takes, /* 50 + 60 - 17 = 93 mm. */
+        "3000 1093 1000 3000 3000 step 3000 1094! 1000! 3000 3000 step 3000 915 1000 3000 3000 "
+        "step 3000 908! 1000! 3000 3000 step"), /* 6 % of 908 mm are less. */
+    ROW(the_distance_grows_with_the_range,      /* 50 + 480 - 140 = 390 mm. */
+        "300 8355 8000 300 300 step 300 8395! 8000! 300 300 step"),
+    ROW(both_values_may_be_given, /* 25 - 17 = 8 mm; 4550 - 17 mm. */
+        "near:5 percent:2 3000! 1007 1000 3000 3000 step 3000! 1009! 1000! 3000 3000 step "
+        "near:2000 percent:255 9999 5515 1000 9999 9999 step 9999 5535 1000! 9999 9999 step"),
+    ROW(the_last_point_is_next_to_the_first, /* Whichever comes first. */
+        "1000 3000! 5000! 7000! 1000@359 step"),
+    ROW(points_that_are_next_in_order_but_not_in_angle_are_no_neighbours, /* Packets were lost. */
+        "1000! 1000@180! step"),
+    ROW(a_point_is_not_its_own_neighbour, "1000 1000 step 1000! step 1000! 5000! step"),
+    ROW(the_third_point_away_is_no_neighbour, "1000! 3000! 5000! 1000! 7000! 9000! 11000! step"),
+    ROW(a_scan_may_have_more_than_256_points, /* The only neighbour of point 294 comes after it. */
+        "294( 1000 ) 500 500 1000 1000 5000! 1000 step"),
+};
 
-void test_the_distance_grows_with_the_range(void)
+void test_rows(void)
 {
-    static const case_t cases[] = {
-        {{300, 8355, 8000, 300, 300}, 8000}, /* 50 + 480 - 140 = 390 mm */
-        {{300, 8395, 8000, 300, 300}, 0},
-    };
-    check_cases(NULL, cases, sizeof cases / sizeof cases[0]);
-}
-
-void test_both_values_may_be_given(void)
-{
-    static const tmini_isolated_t narrow = {.near_mm = 5, .percent = 2};
-    static const tmini_isolated_t wide = {.near_mm = 2000, .percent = 255};
-    static const case_t narrowly[] = {{{3000, 1007, 1000, 3000, 3000}, 1000}, /* 25 - 17 = 8 mm */
-                                      {{3000, 1009, 1000, 3000, 3000}, 0}};
-    static const case_t widely[] = {{{9999, 5515, 1000, 9999, 9999}, 1000}, /* 4550 - 17 mm */
-                                    {{9999, 5535, 1000, 9999, 9999}, 0}};
-    check_cases(&narrow, narrowly, 2);
-    check_cases(&wide, widely, 2);
-}
-
-/* Of two points at 0 and 359 degrees each is the other's neighbour, whichever comes first. */
-void test_the_last_point_is_next_to_the_first(void)
-{
-    add(1000);
-    add(3000);
-    add(5000);
-    add(7000);
-    add(1000);
-    points[4].angle_q6 = 359 * 64;
-    tmini_isolated_step(NULL, &scan);
-    has(0, 1000);
-    has(1, 0);
-    has(2, 0);
-    has(3, 0);
-    has(4, 1000);
-}
-
-/* Packets between them were lost. */
-void test_points_that_are_next_in_order_but_not_in_angle_are_no_neighbours(void)
-{
-    add(1000);
-    add(1000);
-    points[1].angle_q6 = 180 * 64;
-    tmini_isolated_step(NULL, &scan);
-    has(0, 0);
-    has(1, 0);
-}
-
-void test_a_point_is_not_its_own_neighbour(void)
-{
-    scan.points = &points[1];
-    points[1] = (tmini_point_t){0, 1000, 0, 0};
-    points[0] = points[2] = points[1];
-    scan.count = 1;
-    tmini_isolated_step(NULL, &scan);
-    has(1, 0);
-    has(2, 1000); /* Not in the scan. */
-    points[1].distance_mm = 1000;
-    points[2] = (tmini_point_t){64, 5000, 0, 0};
-    scan.count = 2;
-    tmini_isolated_step(NULL, &scan);
-    has(1, 0);
-    has(2, 0);
-}
-
-void test_the_third_point_away_is_no_neighbour(void)
-{
-    static const uint16_t distances_mm[] = {1000, 3000, 5000, 1000, 7000, 9000, 11000};
-    for (size_t i = 0; i < 7; i++) {
-        add(distances_mm[i]);
-    }
-    tmini_isolated_step(NULL, &scan);
-    for (size_t i = 0; i < 7; i++) {
-        has(i, 0);
-    }
-}
-
-void test_a_scan_may_have_more_than_256_points(void)
-{
-    for (uint16_t i = 0; i < 300; i++) {
-        add(i == 294 || i == 295 ? 500 : i == 298 ? 5000 : 1000);
-    }
-    tmini_isolated_step(NULL, &scan);
-    has(294, 500); /* Its only neighbour comes after it. */
-    has(295, 500);
-    has(297, 1000);
-    has(298, 0);
-    has(299, 1000);
+    tell_rows(rows, tell_word);
 }
 
 /* --------------------------------------------------------------------------------------- steps */
@@ -178,11 +115,11 @@ void test_steps_are_called_in_the_order_given(void)
 {
     static const tmini_one_step_t list[] = {{append, &one}, {NULL, &one}, {append, &two}};
     static const tmini_steps_t steps = {list, 3};
-    add(9);
+    row_tell("9", tell_word);
     tmini_steps_step(&steps, &scan);
-    has(0, 912);
+    TEST_ASSERT_EQUAL_UINT16(912, points[0].distance_mm);
     tmini_steps_step(NULL, &scan);
-    has(0, 912);
+    TEST_ASSERT_EQUAL_UINT16(912, points[0].distance_mm);
 }
 
 /* What is masked is no neighbour. */
@@ -193,9 +130,8 @@ void test_the_mounting_comes_before_the_filter(void)
     static const tmini_one_step_t list[] = {{tmini_mount_step, &mount},
                                             {tmini_isolated_step, NULL}};
     static const tmini_steps_t steps = {list, 2};
-    add(1000); /* 89 degrees. */
-    add(1000);
+    row_tell("1000 1000", tell_word); /* 89 degrees; 90. */
     tmini_steps_step(&steps, &scan);
-    has(0, 0);
-    has(1, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, points[0].distance_mm);
+    TEST_ASSERT_EQUAL_UINT16(0, points[1].distance_mm);
 }
