@@ -60,9 +60,8 @@ task_t *tasks_new(unsigned priority, void (*function)(void *argument), void *arg
 
 static bool is_ready(const task_t *task)
 {
-    return task->used && !task->suspended &&
-           (machine.now_us >= task->until_us ||
-            (task->is_awaited != NULL && task->is_awaited(task)));
+    return task->used && (machine.now_us >= task->until_us ||
+                          (task->is_awaited != NULL && task->is_awaited(task)));
 }
 
 static task_t *most_urgent(void)
@@ -81,7 +80,7 @@ static uint64_t first_us(void)
 {
     uint64_t first = UINT64_MAX;
     for (int i = 0; i < TASKS; i++) {
-        if (tasks[i].used && !tasks[i].suspended && tasks[i].until_us < first) {
+        if (tasks[i].used && tasks[i].until_us < first) {
             first = tasks[i].until_us;
         }
     }

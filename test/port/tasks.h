@@ -15,7 +15,6 @@
 typedef struct task {
     bool used;
     unsigned priority;
-    bool suspended;
     uint64_t until_us;                       /* It waits until then, */
     bool (*is_awaited)(const struct task *); /* or until this is true; NULL: only for the time. */
     const void *awaited;                     /* For the kernel. */

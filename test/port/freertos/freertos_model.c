@@ -122,8 +122,7 @@ void vTaskDelay(TickType_t ticks)
 void vTaskSuspend(TaskHandle_t task)
 {
     demand(task == NULL, "only itself");
-    tasks_current->suspended = true;
-    tasks_wait(0, NULL);
+    tasks_wait(NEVER, NULL);
 }
 
 /* The tasks exist already: they run whenever the test's task lets them. */
@@ -173,37 +172,28 @@ StreamBufferHandle_t xStreamBufferCreateStatic(size_t size, size_t trigger, uint
                                                StaticStreamBuffer_t *memory)
 {
     demand(storage != NULL && trigger < size, "a stream's size");
-    *memory = (StaticStreamBuffer_t){.memory = storage, .size = size, .trigger = trigger};
+    *memory = (StaticStreamBuffer_t){.memory = storage, .size = size};
     return memory;
 }
 
-/* As in the kernel, one place stays free, and a waiting task is woken only at the trigger level. */
+/* As in the kernel, one place stays free. The port's tasks wait for notifications, not for a
+ * stream. */
 size_t xStreamBufferSendFromISR(StreamBufferHandle_t stream, const void *bytes, size_t count,
                                 BaseType_t *woken)
 {
     const size_t room = stream->size - 1 - stream->count;
     const size_t sent = count < room ? count : room;
+    (void)woken;
     demand(irq_is_in_handler(), "from an interrupt only");
     memcpy(&stream->memory[stream->count], bytes, sent);
     stream->count += sent;
-    if (stream->waiting != NULL && stream->count >= stream->trigger) {
-        stream->waiting->until_us = 0;
-        if (stream->waiting->priority > tasks_current->priority) {
-            *woken = pdTRUE;
-        }
-        stream->waiting = NULL;
-    }
     return sent;
 }
 
 size_t xStreamBufferReceive(StreamBufferHandle_t stream, void *bytes, size_t size, TickType_t ticks)
 {
-    if (stream->count == 0 && ticks > 0) {
-        stream->waiting = tasks_current;
-        wait_until(after(ticks), NULL);
-        stream->waiting = NULL;
-    }
     const size_t taken = stream->count < size ? stream->count : size;
+    demand(ticks == 0, "a stream that wakes nobody");
     memcpy(bytes, stream->memory, taken);
     stream->count -= taken;
     memmove(stream->memory, &stream->memory[taken], stream->count);
@@ -225,9 +215,6 @@ size_t xStreamBufferBytesAvailable(StreamBufferHandle_t stream)
 
 BaseType_t xStreamBufferReset(StreamBufferHandle_t stream)
 {
-    if (stream->waiting != NULL) {
-        return pdFAIL;
-    }
     stream->count = 0;
     return pdPASS;
 }

@@ -106,16 +106,10 @@ const port_way_t port_ways[] = {
 };
 const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
-static tmini_freertos_counters_t counted(void)
-{
-    tmini_freertos_counters_t counters;
-    tmini_freertos_counters(&port, &counters);
-    return counters;
-}
-
 port_counts_t port_counted(void)
 {
-    const tmini_freertos_counters_t c = counted();
+    tmini_freertos_counters_t c;
+    tmini_freertos_counters(&port, &c);
     return (port_counts_t){.bytes = c.bytes, .lost = c.bytes_lost, .overruns = c.overruns};
 }
 
@@ -141,9 +135,9 @@ void test_a_stream_that_overflows_is_one_gap(void)
     machine_pass(300000);
     assert_gap();
     tmini_counters(&lidar, &counters);
-    TEST_ASSERT_UINT_WITHIN(500 + TICK_US * 13 / 1000, 3930 - 2047, counted().bytes_lost);
+    TEST_ASSERT_UINT_WITHIN(500 + TICK_US * 13 / 1000, 3930 - 2047, port_counted().lost);
     TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(machine.line_bytes, port_counted().bytes);
 }
 
 /* Only the bytes read together with the overrun are lost: the receiving task is woken at once, not
@@ -159,8 +153,8 @@ void test_an_overrun_costs_no_more_than_the_bytes_in_the_fifo(void)
             poll_until(TMINI_EVENT_SCAN);
         }
     }
-    TEST_ASSERT_EQUAL_UINT32(20, counted().overruns);
-    TEST_ASSERT_LESS_OR_EQUAL_UINT32(20 * 16, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(20, port_counted().overruns);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(20 * 16, port_counted().lost);
 }
 
 /* After the gap, the lidar takes no byte before the polling task has emptied rx_buffer. */
@@ -185,9 +179,9 @@ static void fill_small_stream(void)
     start_port();
     freertos_model_receive(false, nothing, sizeof nothing);
     freertos_model_receive(false, manual_packet, PACKET_CUT);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(0, port_counted().lost);
     freertos_model_receive(false, nothing, 10);
-    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(10, port_counted().lost);
 }
 
 void test_no_packet_is_put_together_across_a_full_stream(void)
@@ -198,7 +192,7 @@ void test_no_packet_is_put_together_across_a_full_stream(void)
     freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
     vTaskDelay(pdMS_TO_TICKS(20));
     TEST_ASSERT_EQUAL_UINT32(0, packets());
-    TEST_ASSERT_EQUAL_UINT32(10, counted().bytes_lost); /* The stream is open again. */
+    TEST_ASSERT_EQUAL_UINT32(10, port_counted().lost); /* The stream is open again. */
 }
 
 void test_a_stream_that_was_full_takes_no_byte_until_it_is_empty(void)
@@ -207,7 +201,7 @@ void test_a_stream_that_was_full_takes_no_byte_until_it_is_empty(void)
     fill_small_stream();
     TEST_ASSERT_EQUAL_UINT(60, xStreamBufferReceive(port.stream, taken, sizeof taken, 0));
     freertos_model_receive(false, &manual_packet[PACKET_CUT], sizeof manual_packet - PACKET_CUT);
-    TEST_ASSERT_EQUAL_UINT32(10 + sizeof manual_packet - PACKET_CUT, counted().bytes_lost);
+    TEST_ASSERT_EQUAL_UINT32(10 + sizeof manual_packet - PACKET_CUT, port_counted().lost);
 }
 
 void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
@@ -216,8 +210,8 @@ void test_a_stream_that_was_full_when_stopped_is_open_at_the_next_start(void)
     tmini_freertos_stop(&port);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_freertos_start(&port, &lidar));
     freertos_model_receive(false, manual_packet, sizeof manual_packet);
-    TEST_ASSERT_EQUAL_UINT32(0, counted().bytes_lost);
-    TEST_ASSERT_EQUAL_UINT32(sizeof manual_packet, counted().bytes);
+    TEST_ASSERT_EQUAL_UINT32(0, port_counted().lost);
+    TEST_ASSERT_EQUAL_UINT32(sizeof manual_packet, port_counted().bytes);
 }
 
 /* ------------------------------------------------------------------------------ start and stop */

@@ -47,8 +47,6 @@ typedef struct freertos_stream {
     uint8_t *memory;
     size_t size;
     size_t count;
-    size_t trigger;
-    TaskHandle_t waiting;
 } StaticStreamBuffer_t;
 
 #endif
