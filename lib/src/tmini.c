@@ -469,12 +469,8 @@ static bool give_up_candidate(tmini_t *lidar)
 static bool receive(tmini_t *lidar)
 {
     const tmini_parser_t *const parser = &lidar->decoder.parser;
-    size_t effort = 0;
+    size_t effort = FRAME_EFFORT + tmini_parser_frame(parser)->size;
     while (lidar->pending == 0) {
-        effort += FRAME_EFFORT + tmini_parser_frame(parser)->size;
-        if (effort >= TMINI_PARSER_EFFORT) {
-            return false;
-        }
         const tmini_frame_type_t type = tmini_decoder_next(&lidar->decoder, effort);
         if (type == TMINI_FRAME_PACKET) {
             take_packet(lidar);
@@ -483,7 +479,10 @@ static bool receive(tmini_t *lidar)
         } else if (type == TMINI_FRAME_NONE && !give_up_candidate(lidar)) {
             return true;
         }
-        effort = parser->effort;
+        effort = FRAME_EFFORT + parser->effort + tmini_parser_frame(parser)->size;
+        if (effort >= TMINI_PARSER_EFFORT) {
+            return false;
+        }
     }
     return true;
 }

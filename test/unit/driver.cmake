@@ -51,3 +51,13 @@ if(TARGET test_no_ct)
     target_compile_definitions(test_no_ct PRIVATE TMINI_NO_CT)
     target_include_directories(test_no_ct PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
+
+# The library is compiled again with the effort of Arduino's AVR.
+tmini_add_unit_test(test_small_effort
+    SOURCES test_small_effort.c ../support/tale.c ../support/rig.c ../support/invariants.c
+        ${library_sources}
+    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
+if(TARGET test_small_effort)
+    target_compile_definitions(test_small_effort PRIVATE ARDUINO_ARCH_AVR)
+    target_include_directories(test_small_effort PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+endif()
