@@ -360,7 +360,8 @@ static const row_t rows[] IN_FLASH = {
         "turn later:167 end:0 " COMPLETE
         "count:21 packets:5 dropped:0 errors:0 start-ms:5000 end-ms:5167 chz:610"),
     ROW(a_scan_does_not_end_before_it_began, /* The estimated times of bytes may step back. */
-        "turn later:-1 end:0 " COMPLETE "start-ms:5000 end-ms:5000"),
+        "turn later:-1 end:0 " COMPLETE "start-ms:5000 end-ms:5000 new turn later:1 end:0 "
+        "end-ms:5001"),
     ROW(a_scan_stays_as_it_is_until_the_packet_that_closed_it_is_added,
         "turn end:17 " COMPLETE
         "@0:0 later:167 add @0:17 count:1 packets:1 start-ms:5167 complete:0"),
@@ -398,6 +399,7 @@ static const row_t rows[] IN_FLASH = {
         "S:0 quarter:0 quarter:90d quarter:180d end:0 gaps:1 complete:0"),
     ROW(a_step_back_by_less_than_4_degrees_is_jitter, /* Exactly 4 count as 356 forwards. */
         "S:116d P:115d,200d P:196d+1,270d gaps:0 P:266d+1,300d gaps:0 P!:296d,302d add gaps:1"),
+    ROW(a_step_back_across_0_by_4_degrees_is_no_jitter, "S:2d P:358d+1,0 new S:2d P!:358d,0"),
     ROW(a_packet_of_two_samples_goes_from_the_first_angle_to_the_last,
         "S:0 P2:1d,180d P2:181d,360d end:0 " COMPLETE),
     ROW(the_last_angle_of_a_lone_sample_does_not_count, /* Section 9.6: LSA before FSA. */
