@@ -375,16 +375,6 @@ void test_one_channel_takes_over_from_the_other_without_losing_a_byte(void)
     TEST_ASSERT_EQUAL_UINT32(0, counters.losses); /* No restart has helped. */
 }
 
-void test_a_stall_across_the_change_of_channels_is_noticed_to_the_byte(void)
-{
-    start();
-    assert_true_scans(1, 1);
-    const uint32_t lost = approach_end_of_turn(2 * LAP);
-    stall_bytes(4 * LAP);
-    (void)tmini_pico_wait(&port, 0);
-    TEST_ASSERT_EQUAL_UINT32(lost + 4 * LAP - LAP / 2, port_counted().lost);
-}
-
 /* ------------------------------------------------------------------------------------- waiting */
 
 static void assert_wait(size_t bytes)

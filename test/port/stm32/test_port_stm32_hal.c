@@ -114,6 +114,11 @@ void rig_break_reception(void)
     }
 }
 
+static int send(const char *command, size_t size)
+{
+    return tmini_stm32_hal_port.write(&port, (const uint8_t *)command, size);
+}
+
 /* ------------------------------------------------------------------------------ words of scenes */
 
 #ifdef HAL_DMA_MODULE_ENABLED
@@ -151,6 +156,25 @@ ACT(unblock_dma, hdma_usart1_rx.State = HAL_DMA_STATE_BUSY)
 ACT(report_event, tmini_stm32_hal_rx_event(&port, &huart1))
 ACT(report_half, tmini_stm32_hal_rx_half_complete(&port, &huart1))
 
+static void call_for_other_uart(void)
+{
+    UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY, .ErrorCode = HAL_UART_ERROR_FE};
+    tmini_stm32_hal_rx_event(&port, &other);
+    tmini_stm32_hal_rx_half_complete(&port, &other);
+    tmini_stm32_hal_rx_complete(&port, &other);
+    tmini_stm32_hal_error(&port, &other);
+}
+
+static void receive_elsewhere(void)
+{
+    static uint8_t others[64];
+    TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&huart1, others, sizeof others));
+}
+
+ACT(abort_elsewhere, TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&huart1)))
+ACT(command, TEST_ASSERT_EQUAL_INT(2, send("\xA5\x60", 2)))
+NUMBER(is_ready, huart1.gState == HAL_UART_STATE_READY)
+
 #endif
 
 const play_word_t port_words[] = {
@@ -167,6 +191,11 @@ const play_word_t port_words[] = {
     {.name = "unblock", .act = unblock_dma},
     {.name = "event", .act = report_event},
     {.name = "half", .act = report_half},
+    {.name = "other-uart", .act = call_for_other_uart},
+    {.name = "receive-else", .act = receive_elsewhere},
+    {.name = "abort-else", .act = abort_elsewhere},
+    {.name = "command", .act = command},
+    {.name = "ready", .count = is_ready},
 #endif
     {.name = NULL},
 };
@@ -186,11 +215,6 @@ static void begin_with_buffer(uint8_t *memory)
     play_begin(BY_BYTES);
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_init(&small, &config));
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_stm32_hal_start(&port, &small));
-}
-
-static int send(const char *command, size_t size)
-{
-    return tmini_stm32_hal_port.write(&port, (const uint8_t *)command, size);
 }
 
 void test_bytes_the_port_waits_for_a_handle_that_others_have_locked(void)

@@ -104,6 +104,13 @@ static const row_t scenes[] IN_FLASH = {
         "DMA: P:60 ~22880 event event laps:0"),
     ROW(an_event_of_the_wrong_type_is_no_lap, /* A pause of 30 to 80 µs after each packet. */
         "DMA: for:602:652:5 dma-priority:4 access:5000 400( P ~it poll ) packets:400 laps:0"),
+    /* ---- Others ---- */
+    ROW(callbacks_of_another_uart_change_nothing, "DMA blocks: P ~300 other-uart position:0 FEs:0"),
+    ROW(after_stop_bytes_received_by_others_with_the_same_dma_are_left_alone,
+        "DMA blocks: P:5 run stop receive-else P:10 run packets:5 accounted:65 abort-else"),
+    /* The lidar has lost its supply: the next command finds the error flag set. */
+    ROW(a_command_while_an_error_flag_is_set_is_no_lock_up,
+        "DMA blocks: FE x ~5000 command ~1000 ready:1"),
     /* ---- Stop ---- */
     /* After the HAL has ended the reception, DMA's position is not valid. */
     ROW(an_event_after_the_end_of_reception_hands_nothing_over,
@@ -116,23 +123,6 @@ void test_scenes_with_dma(void)
 }
 
 /* ------------------------------------------------------------------------ events at each moment */
-
-void test_callbacks_of_another_uart_change_nothing(void)
-{
-    for (unsigned way = BY_DMA; way <= BY_BLOCKS; way++) {
-        UART_HandleTypeDef other = {.RxState = HAL_UART_STATE_READY,
-                                    .ErrorCode = HAL_UART_ERROR_FE};
-        play_start(way);
-        play_send(1);
-        machine_pass(300);
-        tmini_stm32_hal_rx_event(&port, &other);
-        tmini_stm32_hal_rx_half_complete(&port, &other);
-        tmini_stm32_hal_rx_complete(&port, &other);
-        tmini_stm32_hal_error(&port, &other);
-        TEST_ASSERT_EQUAL_UINT32(0, tmini_ring_head(&lidar.ring));
-        TEST_ASSERT_EQUAL_UINT32(0, rig_counts().framing_errors);
-    }
-}
 
 static void idle_event(void)
 {
@@ -176,36 +166,6 @@ void test_an_error_inside_the_hals_start_does_not_end_reception(void)
         TEST_ASSERT_EQUAL_UINT32(100, play_packets());
         TEST_ASSERT_EQUAL_UINT32(0, rig_counts().restarts);
         TEST_ASSERT_LESS_THAN_UINT32(50, irq.lines[MODEL_USART_IRQ].served);
-    }
-}
-
-/* The lidar has lost its supply: the next command finds the error flag set. */
-void test_a_command_while_an_error_flag_is_set_is_no_lock_up(void)
-{
-    for (unsigned way = BY_DMA; way <= BY_BLOCKS; way++) {
-        static const uint8_t command[] = {0xA5, 0x60};
-        static const uint8_t broken = 0x00;
-        play_start(way);
-        machine_send(MODEL_FE, &broken, 1);
-        machine_pass(5000);
-        TEST_ASSERT_EQUAL_INT(2, tmini_stm32_hal_port.write(&port, command, 2));
-        machine_pass(1000);
-        TEST_ASSERT_EQUAL(HAL_UART_STATE_READY, huart1.gState);
-    }
-}
-
-void test_after_stop_bytes_received_by_others_with_the_same_dma_are_left_alone(void)
-{
-    for (unsigned way = BY_DMA; way <= BY_BLOCKS; way++) {
-        static uint8_t others[64];
-        play_start(way);
-        play_receive(5);
-        tmini_stm32_hal_stop(&port);
-        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_Receive_DMA(&huart1, others, sizeof others));
-        play_receive(10);
-        TEST_ASSERT_EQUAL_UINT32(5, play_packets());
-        TEST_ASSERT_EQUAL_UINT32(5 * sizeof start_packet, play_accounted());
-        TEST_ASSERT_EQUAL(HAL_OK, HAL_UART_AbortReceive(&huart1));
     }
 }
 

@@ -8,7 +8,7 @@
  * Variants, by macros:
  *   STM32_MODEL_SR            registers SR and DR (F1, F2, F4, L1), where reading clears flags;
  *                             else ISR, ICR, RDR
- *   STM32_MODEL_STREAMS       a DMA with FIFO, whose abort ends with an interrupt (F2, F4, F7, H7)
+ *   STM32_MODEL_STREAMS       a DMA with FIFO (F2, F4, F7, H7)
  *   STM32_MODEL_LINKED_LISTS  a DMA that is circular by linked lists (H5, U5), and after an error
  *                             continues with the rest of its block
  *   STM32_MODEL_DCACHE        the CPU sees what DMA has written only after it has invalidated the

@@ -92,13 +92,6 @@ static void idle_with_dma(UART_HandleTypeDef *uart)
 
 /* ------------------------------------------------------------------------------------------ DMA */
 
-static void dma_error_reported(DMA_HandleTypeDef *dma)
-{
-    (void)dma;
-    huart1.RxXferCount = 0;
-    HAL_UART_ErrorCallback(&huart1);
-}
-
 /* With linked lists, the channel finishes its current block before it reads the list of the
  * start. */
 static uint32_t first_round(uint16_t size)
@@ -139,18 +132,13 @@ static void dma_stop(DMA_HandleTypeDef *dma)
     dma->State = HAL_DMA_STATE_READY;
 }
 
-static void dma_abort(DMA_HandleTypeDef *dma)
-{
-    dma_stop(dma);
-    model.dma.channel.CBR1 = 0;
-}
-
 HAL_StatusTypeDef HAL_DMA_Abort(DMA_HandleTypeDef *hdma)
 {
     if (hdma->State != HAL_DMA_STATE_BUSY) {
         return HAL_ERROR;
     }
-    dma_abort(hdma);
+    dma_stop(hdma);
+    model.dma.channel.CBR1 = 0;
     return HAL_OK;
 }
 
@@ -162,24 +150,6 @@ HAL_StatusTypeDef HAL_DMAEx_Resume(DMA_HandleTypeDef *hdma)
     model.dma.enabled = true;
     hdma->State = HAL_DMA_STATE_BUSY;
     return HAL_OK;
-}
-
-/* Streams and linked lists stop with an interrupt, others at once. */
-static bool dma_stop_later(DMA_HandleTypeDef *dma)
-{
-    if (dma->State != HAL_DMA_STATE_BUSY) {
-        return false;
-    }
-#if defined(STM32_MODEL_STREAMS) || defined(STM32_MODEL_LINKED_LISTS)
-    dma->State = HAL_DMA_STATE_ABORT;
-    model.dma.enabled = false;
-    model.dma.flags |= MODEL_DMA_TC;
-    model_step();
-#else
-    dma_abort(dma);
-    dma->XferAbortCallback(dma);
-#endif
-    return true;
 }
 
 static void end_reception(UART_HandleTypeDef *uart);
@@ -210,15 +180,9 @@ static void dma_complete(UART_HandleTypeDef *uart)
 
 void HAL_DMA_IRQHandler(DMA_HandleTypeDef *hdma)
 {
+    (void)hdma;
     model_step();
     const uint32_t flags = model.dma.flags & model.dma.interrupts;
-    if (hdma->State == HAL_DMA_STATE_ABORT) {
-        dma_abort(hdma);
-        if (hdma->XferAbortCallback != NULL) {
-            hdma->XferAbortCallback(hdma);
-        }
-        return;
-    }
     if ((flags & MODEL_DMA_TE) != 0) {
         dma_failed(&huart1);
         return;
@@ -295,7 +259,6 @@ RECEPTION(HAL_UART_Receive_IT, HAL_UART_RECEPTION_STANDARD, start_interrupt(huar
 static HAL_StatusTypeDef start_dma(UART_HandleTypeDef *uart, uint8_t *memory, uint16_t size)
 {
     prepare(uart, memory, size);
-    uart->hdmarx->XferAbortCallback = NULL;
     if (!dma_start(uart, memory, size)) {
         uart->ErrorCode = HAL_UART_ERROR_DMA;
         uart->RxState = HAL_UART_STATE_READY;
@@ -337,9 +300,8 @@ HAL_StatusTypeDef HAL_UART_AbortReceive(UART_HandleTypeDef *huart)
 #ifndef STM32_MODEL_NO_DMA
     if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
         model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
-        if (huart->hdmarx != NULL && huart->hdmarx->State == HAL_DMA_STATE_BUSY) {
-            huart->hdmarx->XferAbortCallback = NULL;
-            dma_abort(huart->hdmarx);
+        if (huart->hdmarx != NULL) {
+            (void)HAL_DMA_Abort(huart->hdmarx);
         }
     }
 #endif
@@ -392,11 +354,7 @@ static void break_off(UART_HandleTypeDef *uart)
 #ifndef STM32_MODEL_NO_DMA
     if ((model_usart.CR3 & MODEL_CR3_DMAR) != 0) {
         model_unset(&model_usart.CR3, MODEL_CR3_DMAR);
-        uart->hdmarx->XferAbortCallback = dma_error_reported;
-        if (!dma_stop_later(uart->hdmarx)) {
-            uart->hdmarx->XferAbortCallback(uart->hdmarx);
-        }
-        return;
+        (void)HAL_DMA_Abort(uart->hdmarx);
     }
 #endif
     HAL_UART_ErrorCallback(uart);

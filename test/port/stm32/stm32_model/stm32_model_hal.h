@@ -75,7 +75,7 @@ typedef enum {
     HAL_DMA_STATE_SUSPEND,
 } model_dma_state_t;
 
-typedef struct DMA_HandleTypeDef {
+typedef struct {
     DMA_Channel_TypeDef *Instance;
     struct {
         uint32_t Mode;
@@ -90,7 +90,6 @@ typedef struct DMA_HandleTypeDef {
     DMA_QListTypeDef *LinkedListQueue;
 #endif
     volatile model_dma_state_t State;
-    void (*XferAbortCallback)(struct DMA_HandleTypeDef *dma);
 } DMA_HandleTypeDef;
 
 #define __HAL_DMA_GET_COUNTER(handle) ((void)(handle), model_dma_left())
