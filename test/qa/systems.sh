@@ -18,9 +18,6 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
-# shellcheck source=test/support/mirrors.sh
-. "$root/test/support/mirrors.sh"
-
 all_systems="debian-12 debian-13 ubuntu-24.04 debian-12-i386"
 work=$root/build-systems
 folder="/home/user/Ein Ordner mit Umläuten and spaces and a rather long name/tmini"
@@ -29,6 +26,14 @@ table=$work/table.md
 usage() {
     sed -n '5,16s/^# \{0,1\}//p' "$0" >&2
     exit 2
+}
+
+# mirror_of debian|ubuntu: prints that system's address in the machine's package sources. If these
+# name only the other system, prints the neighbouring folder: a mirror of one often has both.
+mirror_of() {
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | sed -n '
+        s/^URIs: *\([^ ]*\/\)\(debian\|ubuntu\)\/* *$/\1'"$1"'/p
+        s/^deb \(\[.*\] \)\{0,1\}\([^ ]*\/\)\(debian\|ubuntu\)\/* .*/\2'"$1"'/p' | head -n 1
 }
 
 # describe NAME: sets the variables for debootstrap and apt.

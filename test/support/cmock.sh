@@ -24,38 +24,21 @@ remove_cmock_download() {
 take_cmock_from_trixie() {
     cmock_dir=$(mktemp -d)
     chmod 755 "$cmock_dir" # apt reads it as its own user.
-    if download_from_trixie "$cmock_dir" cmock; then
-        file=$(ls "$cmock_dir"/cmock_*.deb)
-        required_packages=$(echo "$required_packages" | sed "s|\\<cmock\\>|$file|")
-        return
-    fi
-    cat >&2 <<'END'
-This Debian has no package cmock, and that of the next release could not be had from the machine's
-own package sources (why: above). Please install CMock by hand and name its folder:
-CMOCK_ROOT=DIR test/run.sh
-END
-}
-
-is_ubuntu() {
-    grep -q '^ID=ubuntu' "${OS_RELEASE:-/etc/os-release}" 2>/dev/null
+    download_from_trixie "$cmock_dir" cmock || return
+    file=$(ls "$cmock_dir"/cmock_*.deb)
+    required_packages=$(echo "$required_packages" | sed "s|\\<cmock\\>|$file|")
 }
 
 # Ubuntu has the package, but not in the component that is always there.
-ask_for_universe() {
-    cat >&2 <<'END'
-The package cmock is in Ubuntu's component "universe", which this computer does not use. Please
-add it:
-sudo add-apt-repository universe && sudo apt-get update
-END
-}
-
 find_cmock() {
     if is_present "$cmock_script" || is_available cmock; then
         return
-    elif is_ubuntu; then
-        ask_for_universe
-    else
-        take_cmock_from_trixie
+    elif system_name | grep -q '^ubuntu'; then
+        echo "The package cmock is in Ubuntu's component \"universe\". Please add it:
+sudo add-apt-repository universe && sudo apt-get update" >&2
+    elif ! take_cmock_from_trixie; then
+        echo "There is no package cmock here, and that of Debian 13 could not be had (why: above).
+Please install CMock by hand and name its folder: CMOCK_ROOT=DIR test/run.sh" >&2
     fi
 }
 
