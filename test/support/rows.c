@@ -127,10 +127,33 @@ size_t row_bytes(const char *digits, uint8_t *bytes)
 
 bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
 {
+    const UNITY_LINE_TYPE line = Unity.CurrentTestLineNumber;
+    const size_t length = strcspn(word, ":<>");
+    const uint32_t wanted =
+        word[length] != '\0' ? (uint32_t)strtoul(&word[length + 1], NULL, 0) : 0;
+
+    while (count > 0 && (strlen(numbers->name) != length || strncmp(numbers->name, word, length))) {
+        numbers++;
+        count--;
+    }
+    if (count == 0) {
+        return false;
+    }
+    if (word[length] == '>') {
+        UNITY_TEST_ASSERT_GREATER_THAN_UINT32(wanted, numbers->number, line, word);
+    } else if (word[length] == '<') {
+        UNITY_TEST_ASSERT_SMALLER_THAN_UINT32(wanted, numbers->number, line, word);
+    } else {
+        UNITY_TEST_ASSERT_EQUAL_UINT32(wanted, numbers->number, line, word);
+    }
+    return true;
+}
+
+bool rows_store(const char *word, const row_member_t *members, size_t count)
+{
     for (size_t i = 0; i < count; i++) {
-        if (row_is(word, numbers[i].name)) {
-            UNITY_TEST_ASSERT_EQUAL_UINT32(row_number(word), numbers[i].number,
-                                           Unity.CurrentTestLineNumber, word);
+        if (row_is(word, members[i].name)) {
+            member_store(members[i].member, members[i].size, row_number(word));
             return true;
         }
     }

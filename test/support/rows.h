@@ -9,6 +9,8 @@
 #ifndef ROWS_H
 #define ROWS_H
 
+#include "members.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -60,13 +62,23 @@ uint32_t row_number(const char *word);
 /* Bytes in hexadecimal digits, such as "AA55"; returns how many there are. */
 size_t row_bytes(const char *digits, uint8_t *bytes);
 
-/* For words such as "count:21", which name a number and the value that is expected. If the word's
- * name is none of these, returns false. */
+/* For words such as "count:21", which name a number and the value that is expected; or "count>20",
+ * "count<22": it is more or less. If the word's name is none of these, returns false. */
 typedef struct {
     const char *name;
     uint32_t number;
 } row_number_t;
 #define row_expects(word, numbers) rows_expect(word, numbers, sizeof(numbers) / sizeof(numbers)[0])
 bool rows_expect(const char *word, const row_number_t *numbers, size_t count);
+
+/* For words such as "attempts:3", which give a member this value: {"attempts", MEMBER(config.attempts)}. If
+ * the word's name is none of these, returns false. */
+typedef struct {
+    const char *name;
+    void *member;
+    size_t size;
+} row_member_t;
+#define row_stores(word, members) rows_store(word, members, sizeof(members) / sizeof(members)[0])
+bool rows_store(const char *word, const row_member_t *members, size_t count);
 
 #endif
