@@ -59,46 +59,45 @@ PLACES = [
 ]
 
 # Patterns and their replacements: operators and constants that programmers often confuse.
-C_REPLACEMENTS = [
+COMMON = [
     (r"(?<![<>=!-])<(?![<=])", ["<=", ">="]), (r"<=(?!=)", ["<", ">"]),
-    (r"(?<![->])>(?![>=])", [">=", "<="]), (r"(?<!>)>=", [">", "<"]),
+    (r"(?<![->=])>(?![>=])", [">=", "<="]), (r"(?<![>=])>=(?!=)", [">", "<"]),
+    (r"(?<= )\+(?= )", ["-"]), (r"(?<= )-(?= )", ["+"]), (r"-=", ["+="]), (r"\+=", ["-="]),
+]
+
+WITH_BRACES = COMMON + [
+    (r"&&", ["||"]), (r"\|\|", ["&&"]), (r"\btrue\b", ["false"]), (r"\bfalse\b", ["true"]),
+    (r"(?<= )\*(?= )", ["/"]), (r"(?<= )/(?= )", ["*"]), (r"(?<= )%(?= )", ["*"]), (r"\+\+", ["--"]),
+    (r"\bif \((?=.*\) \{$)", ["if (true || ", "if (false && "]),
+]
+
+C_REPLACEMENTS = WITH_BRACES + [
     (r"==", ["!="]), (r"!=", ["=="]),
-    (r"&&", ["||"]), (r"\|\|", ["&&"]),
     (r"(?<![&])&(?![&=])(?= )", ["|"]), (r"(?<!\|)\|(?![|=])", ["&"]), (r"\^(?!=)", ["&"]),
-    (r"<<(?!=)", [">>"]), (r"(?<!-)>>(?!=)", ["<<"]),
-    (r"(?<= )\+(?= )", ["-"]), (r"(?<= )-(?= )", ["+"]), (r"(?<= )\*(?= )", ["/"]),
-    (r"(?<= )/(?= )", ["*"]), (r"(?<= )%(?= )", ["*"]),
-    (r"\+\+", ["--"]), (r"--(?!-)", ["++"]),
-    (r"\+=", ["-=", "="]), (r"-=", ["+="]), (r"\|=", ["&=", "="]), (r"\^=", ["="]), (r"&=", ["|="]),
+    (r"<<(?!=)", [">>"]), (r"(?<!-)>>(?!=)", ["<<"]), (r"--(?!-)", ["++"]),
+    (r"\+=", ["="]), (r"\|=", ["&=", "="]), (r"\^=", ["="]), (r"&=", ["|="]),
     # Types that may be too narrow for a counter or a time.
     (r"\b(?:size_t|uint32_t|unsigned)(?= \w+(?: = |;|,|\)))", ["uint16_t", "uint8_t"]),
     (r"\buint16_t(?= \w+(?: = |;|,|\)))", ["uint8_t"]),
-    (r"\btrue\b", ["false"]), (r"\bfalse\b", ["true"]),
     (r"(?<=[( ,+&|<>=-])!(?=[a-z(])", [""]),
     (r"\b(?:0x[0-9A-Fa-f]+|\d+)(?=[uU]?\b)", ["{0} + 1", "{0} - 1"]),
-    (r"\bif \((?=.*\) \{$)", ["if (true || ", "if (false && "]),
     (r"\breturn (?=[a-z(!].*;$)", ["return !"]),
     (r"^ +(?!return|const|case|default|break|continue|static|uint|size_t|int|bool|unsigned|tmini_\w+_t |for|while)"
      r"[a-z(*][^=]*(?:=(?!=).*)?;$", [";"]),
 ]
 
-PYTHON_REPLACEMENTS = [
-    (r"(?<![<>=!-])<(?![<=])", ["<=", ">="]), (r"<=", ["<", ">"]), (r"(?<![->])>(?![>=])", [">=", "<="]),
-    (r"(?<!>)>=", [">", "<"]), (r"==", ["!="]), (r"!=", ["=="]), (r"\band\b", ["or"]), (r"\bor\b", ["and"]),
+PYTHON_REPLACEMENTS = COMMON + [
+    (r"==", ["!="]), (r"!=", ["=="]), (r"\band\b", ["or"]), (r"\bor\b", ["and"]),
     (r"\bnot (?!in\b)", [""]), (r"\bnot in\b", ["in"]), (r"\bis not\b", ["is"]), (r"\bis (?!not\b)", ["is not "]),
-    (r"\bTrue\b", ["False"]), (r"\bFalse\b", ["True"]), (r"(?<= )\+(?= )", ["-"]), (r"(?<= )-(?= )", ["+"]),
-    (r"(?<= )\*(?= )", ["//"]), (r"(?<= )//?(?= )", ["*"]), (r"(?<= )%(?= )", ["+"]), (r"\+=", ["-="]), (r"-=", ["+="]),
+    (r"\bTrue\b", ["False"]), (r"\bFalse\b", ["True"]),
+    (r"(?<= )\*(?= )", ["//"]), (r"(?<= )//?(?= )", ["*"]), (r"(?<= )%(?= )", ["+"]),
     (r"(?<![\w.])\d+(?![\w.])", ["{0} + 1", "{0} - 1"]), (r"\breturn (?=[^N\n])", ["return not "]),
     (r"\bif (?=.*:$)", ["if not "]), (r"^ +(?:[a-z_][\w.\[\]]*\(.*\)|[\w.]+ [-+]?= .*)$", ["pass"]),
 ]
 
-SCRIPT_REPLACEMENTS = [
-    (r"(?<![<>=!-])<(?![<=])", ["<=", ">="]), (r"<=(?!=)", ["<", ">"]), (r"(?<![->=])>(?![>=])", [">=", "<="]),
-    (r"(?<![>=])>=(?!=)", [">", "<"]), (r"===", ["!=="]), (r"!==", ["==="]), (r"&&", ["||"]), (r"\|\|", ["&&"]),
-    (r"\?\?", ["&&"]), (r"(?<=[( =&|])!(?=[a-z(])", [""]), (r"\btrue\b", ["false"]), (r"\bfalse\b", ["true"]),
-    (r"(?<= )\+(?= )", ["-"]), (r"(?<= )-(?= )", ["+"]), (r"(?<= )\*(?= )", ["/"]), (r"(?<= )/(?= )", ["*"]),
-    (r"(?<= )%(?= )", ["*"]), (r"\+=", ["-="]), (r"-=", ["+="]), (r"\+\+", ["--"]),
-    (r"(?<![\w.#])\d+(?![\w.])", ["{0} + 1", "{0} - 1"]), (r"\bif \((?=.*\) \{$)", ["if (true || ", "if (false && "]),
+SCRIPT_REPLACEMENTS = WITH_BRACES + [
+    (r"===", ["!=="]), (r"!==", ["==="]), (r"\?\?", ["&&"]), (r"(?<=[( =&|])!(?=[a-z(])", [""]),
+    (r"(?<![\w.#])\d+(?![\w.])", ["{0} + 1", "{0} - 1"]),
     (r"^ +(?:await )?[a-z][\w.#]*\(.*\);$", [";"]), (r"^ +(?:this\.)?[\w.#]+ = .*;$", [";"]),
 ]
 
@@ -140,13 +139,15 @@ def change_of(old, begin, end, replacement):
     """Describes the change with the operands around it, so that an entry in mutants.txt names one place."""
     if replacement in (";", "pass"):
         return f"{' '.join(old[begin:end].split('(')[0].split('=')[0].split())} removed"
+    if narrower := re.fullmatch(r"uint(\d+)_t", replacement):
+        variable = re.match(r" (\w+)", old[end:])
+        return f"{variable[1]} in {narrower[1]} bits"
     words = [match.span() for match in re.finditer(r"\S+", old)]
     last = next(i for i, span in enumerate(words) if span[1] >= end)
     first = max(i for i, span in enumerate(words) if span[0] <= begin)
     is_word = lambda i: re.search(r"\w", old[slice(*words[i])])
-    if not re.match(r"u?int|size_t|unsigned", old[begin:]):  # A type needs no word before it.
-        while first > 0 and not is_word(first := first - 1):
-            pass
+    while first > 0 and not is_word(first := first - 1):
+        pass
     while last + 1 < len(words) and not is_word(last := last + 1):
         pass
     left = re.sub(r"^.*\((?=[^()]*$)", "", old[words[first][0]:begin])
@@ -355,6 +356,11 @@ def known_survivors():
     for line in KNOWN.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
             place, reason = line.rsplit(" | ", 1)
+            path, first, second = place.split(" | ", 2)
+            if first.endswith(" bits"):  # "8 or 16 bits": of each "function.variable"
+                known.update((f"{path} | {word.replace('.', ' | ')} in {bits} bits", reason)
+                             for word in second.split() for bits in re.findall(r"\d+", first))
+                continue
             code, *changes = place.split(" -> ")
             known.update((f"{code} -> {change}", reason) for change in changes)
             if not changes:  # "code removed"
