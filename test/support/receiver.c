@@ -225,10 +225,13 @@ static void expect_item(void *context, const reference_item_t *item)
     TEST_ASSERT_EQUAL_INT(item->is_packet ? TMINI_FRAME_PACKET : TMINI_FRAME_REPLY, frame);
     TEST_ASSERT_EQUAL_UINT(item->length, frame_size(receiver));
     TEST_ASSERT_EQUAL_UINT(item->offset, run->fed - tmini_ring_unread(&receiver->ring));
-    if (item->is_packet) {
-        expect_packet(receiver, item);
-    } else {
+    if (!item->is_packet) {
         expect_reply(receiver, item);
+        return;
+    }
+    expect_packet(receiver, item);
+    if (run->course->on_packet != NULL) {
+        run->course->on_packet(&receiver->packet);
     }
 }
 

@@ -54,9 +54,10 @@ void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t le
 
 /* How receiver_compare() feeds the bytes. */
 typedef struct {
-    size_t chunk;                     /* Bytes at a time; 0: random, by `random`. */
-    random_t *random;                 /* May be NULL if chunk is not 0. */
-    const reference_reply_t *awaited; /* Awaited from the beginning; NULL: none. */
+    size_t chunk;                                    /* Bytes at a time; 0: random, by `random`. */
+    random_t *random;                                /* May be NULL if chunk is not 0. */
+    const reference_reply_t *awaited;                /* Awaited from the beginning; NULL: none. */
+    void (*on_packet)(const tmini_packet_t *packet); /* That was compared. NULL: nothing. */
 } receiver_course_t;
 
 /* Feeds the bytes without loss, and asserts that frames, points and counters are those of the

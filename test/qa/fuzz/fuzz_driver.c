@@ -4,36 +4,23 @@
 /* Fuzz target: the whole driver. The input is a list of actions: bytes received by interrupt or
  * DMA, time passing, polls, commands at any moment, and a port that takes none, one or both
  * bytes, or fails. The driver must not crash, hang or miscount bytes, and must send only whole
- * two-byte commands.
- *
- * Alternatively the bytes come from a turning lidar (turning_lidar.h) on a line that loses and
- * damages some, also in the middle of a poll. Then no scan may mix two revolutions, and no scan
- * with missing points may be reported as complete. */
+ * two-byte commands. */
 
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "encoder.h"
 #include "invariants.h"
 #include "tmini_driver.h"
-#include "turning_lidar.h"
 
 #define RX_SIZE 512u
 #define POINTS 700u
 #define FEW_POINTS 100u
 
 /* Bits of the input's first byte; two more bits are the filter. */
-enum {
-    DMA = 1,
-    STREAMING = 2,
-    NO_RECOVERY = 16,
-    TRUE_LIDAR = 32,
-    MANY_POINTS = 64,
-    CT_INFORMATION = 128
-};
+enum { DMA = 1, STREAMING = 2, NO_RECOVERY = 16, MANY_POINTS = 64 };
 
 static struct {
     const uint8_t *data;
@@ -44,9 +31,6 @@ static struct {
     uint32_t fed;
     bool half_sent;
     bool dma;
-    bool is_true;        /* The bytes come from the turning lidar. */
-    unsigned surprises;  /* A packet arrives at each of this many readings of the clock. */
-    bool surprise_first; /* It arrives before the reading, otherwise after it. */
     tmini_t lidar;
     uint8_t rx[RX_SIZE];
     tmini_point_t points[POINTS];
@@ -84,9 +68,6 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     for (int i = 0; i < taken; i++) {
         demand(world.half_sent ? is_command(bytes[i]) : bytes[i] == 0xA5);
         world.half_sent = !world.half_sent;
-        if (world.is_true && !world.half_sent) {
-            turning_command(bytes[i]);
-        }
     }
     return taken;
 }
@@ -110,51 +91,10 @@ static void receive_all(const uint8_t *bytes, size_t count)
     }
 }
 
-/* ---- The turning lidar's line ---- */
-
-static void arrive(const uint8_t *bytes, size_t count)
-{
-    if (!turning_received(bytes, count)) {
-        world.left = 0; /* End this input. */
-        return;
-    }
-    receive_all(bytes, count);
-}
-
-/* The lidar sends what it has to reply, and its next packet, of which the bytes from `from` up to
- * `to` are lost. */
-static void pass_packet(size_t from, size_t to, uint8_t flipped)
-{
-    uint8_t packet[SIM_FRAME_MAX];
-    bool is_packet = false;
-    size_t size;
-    while ((size = turning_frame(packet, &is_packet, &world.now_ms)) > 0 && !is_packet) {
-        arrive(packet, size);
-    }
-    if (size > 0) {
-        packet[flipped % size] ^= flipped;
-        from = from < size ? from : size;
-        to = to < from ? from : to < size ? to : size;
-        arrive(packet, from);
-        arrive(&packet[to], size - to);
-    }
-}
-
-static void surprise(bool is_due)
-{
-    if (is_due && world.surprises > 0) {
-        world.surprises--;
-        pass_packet(0, 0, 0);
-    }
-}
-
 static uint32_t port_now_ms(void *context)
 {
     demand(context == &world);
-    surprise(world.surprise_first);
-    const uint32_t now_ms = world.now_ms;
-    surprise(!world.surprise_first);
-    return now_ms;
+    return world.now_ms;
 }
 
 /* ---- Actions ---- */
@@ -237,9 +177,6 @@ static void poll_events(uint8_t times)
         demand(event <= TMINI_EVENT_MORE && lidar_is_sound(&world.lidar));
         if (event == TMINI_EVENT_SCAN) {
             demand(tmini_scan(&world.lidar)->count <= world.lidar.decoder.builder.capacity);
-            if (world.is_true) {
-                turning_judge(tmini_scan(&world.lidar));
-            }
         }
         if (event == TMINI_EVENT_COMMAND_FAILED) {
             demand(tmini_command_error(&world.lidar) < 0);
@@ -285,74 +222,6 @@ static void act(void)
     }
 }
 
-/* The lidar sends packets, which all arrive or are all lost, with polls in between or not. */
-static void turn(unsigned packets, bool come, bool polled)
-{
-    for (unsigned i = 0; i < packets; i++) {
-        pass_packet(0, come ? 0 : SIM_FRAME_MAX, 0);
-        if (polled) {
-            poll_events(2);
-        }
-    }
-}
-
-/* Bytes of one or of many packets are lost or damaged. */
-static void damage(uint8_t how)
-{
-    const uint8_t from = take();
-    const uint8_t to = take();
-    const uint8_t flipped = (how & 1) != 0 ? take() : 0;
-    const unsigned packets = (how & 2) != 0 ? take() % 64u : 1;
-    for (unsigned i = 0; i < packets; i++) {
-        pass_packet(from, to, flipped);
-        if ((how & 4) != 0) {
-            poll_events(2);
-        }
-    }
-}
-
-static void act_truly(void)
-{
-    const uint8_t action = take();
-    const uint8_t detail = action / 8;
-    switch (action % 8) {
-    case 0:
-    case 1:
-        turn(1u + detail, true, action % 8 == 0);
-        break;
-    case 2:
-        turn(take() % 64u, false, (detail & 1) != 0);
-        break;
-    case 3:
-        damage(detail);
-        break;
-    case 4:
-        command(take());
-        break;
-    case 5:
-        world.write_behaviour = detail % 4 - 1;
-        break;
-    case 6:
-        world.surprises = 1u + detail / 2 % 4u;
-        world.surprise_first = (detail & 1) != 0;
-        break;
-    default:
-        poll_events(detail);
-        break;
-    }
-}
-
-/* Brings the turning lidar and the driver to scanning. */
-static void start_truly(bool ct_information)
-{
-    turning_begin(ct_information);
-    (void)tmini_start(&world.lidar);
-    poll_events(1);
-    world.now_ms += 100; /* The line is quiet. */
-    turn(4, true, true);
-    demand(tmini_state(&world.lidar) == TMINI_STATE_SCANNING);
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -364,8 +233,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     world.write_behaviour = 2;
     const uint8_t setup = take();
     world.dma = (setup & DMA) != 0;
-    world.is_true = (setup & TRUE_LIDAR) != 0;
-    const bool streaming = (setup & STREAMING) != 0 && !world.is_true;
+    const bool streaming = (setup & STREAMING) != 0;
     world.now_ms = 0u - (uint32_t)setup * 100u; /* So that the clock wraps around. */
     const tmini_config_t config = {
         .port = &port,
@@ -377,20 +245,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .max_points = streaming                    ? 0
                       : (setup & MANY_POINTS) != 0 ? POINTS
                                                    : FEW_POINTS,
-        /* The true lidar's marks use all bits of a sample. */
-        .filter = streaming || world.is_true ? 0 : (uint8_t)(setup & TMINI_FILTER_BOTH),
+        .filter = streaming ? 0 : (uint8_t)(setup & TMINI_FILTER_BOTH),
         .recovery = (setup & NO_RECOVERY) != 0 ? TMINI_RECOVERY_OFF : TMINI_RECOVERY_ON,
     };
     demand(tmini_init(&world.lidar, &config) == TMINI_OK);
-    if (world.is_true) {
-        start_truly((setup & CT_INFORMATION) != 0);
-    }
     while (world.left > 0) {
-        if (world.is_true) {
-            act_truly();
-        } else {
-            act();
-        }
+        act();
         demand(lidar_is_sound(&world.lidar));
         account();
     }
@@ -399,9 +259,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         (void)tmini_poll(&world.lidar);
     }
     account();
-    if (world.is_true && turning_verdict() != NULL) {
-        (void)fprintf(stderr, "%s\n", turning_verdict());
-        abort();
-    }
     return 0;
 }

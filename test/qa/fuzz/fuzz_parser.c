@@ -2,8 +2,8 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /* Fuzz target: parser, packets and scans decode any bytes, in any chunks. They must find the same
- * frames, points and scans as the reference decoder, and account for every byte. Random bytes are
- * hardly ever a packet: the mutator below makes packets. */
+ * frames, points (receiver.h) and scans as the reference decoder. Random bytes are hardly ever a
+ * packet: the mutator below makes packets. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -12,10 +12,10 @@
 
 #include "encoder.h"
 #include "invariants.h"
-#include "random.h"
+#include "receiver.h"
 #include "reference_scans.h"
-#include "tmini/parts/tmini_parser.h"
 #include "tmini/parts/tmini_builder.h"
+#include "unity.h"
 
 #define FRAMES_MAX 4096
 #define SCAN_POINTS 200 /* Fewer than a scan may have, to test the overflow as well. */
@@ -25,6 +25,12 @@ static reference_item_t expected[FRAMES_MAX];
 static size_t expected_count;
 static size_t seen;
 static size_t scanned; /* Number of frames before the next scan. */
+static receiver_t receiver;
+static tmini_builder_t builder;
+
+void setUp(void) {}
+
+void tearDown(void) {}
 
 static void demand(int condition)
 {
@@ -38,20 +44,6 @@ static void expect(void *context, const reference_item_t *item)
     (void)context;
     demand(expected_count < FRAMES_MAX);
     expected[expected_count++] = *item;
-}
-
-static void compare_packet(const tmini_packet_t *packet)
-{
-    demand(seen < expected_count);
-    const reference_item_t *const item = &expected[seen++];
-    demand(item->is_packet && item->ct == packet->ct && item->lsn == packet->count);
-    for (unsigned i = 0; i < packet->count; i++) {
-        const reference_point_t wanted = reference_point(item->bytes, i);
-        tmini_point_t point;
-        demand(tmini_packet_point(packet, i, &point));
-        demand(point.angle_q6 == wanted.angle_q6 && point.distance_mm == wanted.distance_mm);
-        demand(point.intensity == wanted.intensity && point.flag == wanted.flag);
-    }
 }
 
 /* Compares the points that fit in the scan. */
@@ -86,37 +78,15 @@ static void compare_scan(const tmini_scan_t *scan)
     compare_points(scan, &wanted);
 }
 
-static void gather(tmini_builder_t *builder, const tmini_packet_t *packet)
+static void gather(const tmini_packet_t *packet)
 {
-    if (tmini_builder_add(builder, packet, 0)) {
-        compare_scan(&builder->scan);
-        demand(!tmini_builder_add(builder, packet, 0));
+    while (!expected[seen++].is_packet) { /* Replies. */
     }
-}
-
-static void drain(tmini_parser_t *parser, tmini_builder_t *builder)
-{
-    for (;;) {
-        const tmini_frame_type_t type = tmini_parser_next(parser);
-        demand(parser_is_sound(parser) && builder_is_sound(builder));
-        switch (type) {
-        case TMINI_FRAME_NONE:
-            return;
-        case TMINI_FRAME_MORE:
-            break;
-        case TMINI_FRAME_PACKET: {
-            tmini_packet_t packet;
-            tmini_packet_open(&packet, tmini_parser_frame(parser));
-            compare_packet(&packet);
-            gather(builder, &packet);
-            break;
-        }
-        case TMINI_FRAME_REPLY:
-            demand(seen < expected_count && !expected[seen].is_packet);
-            seen++;
-            break;
-        }
+    if (tmini_builder_add(&builder, packet, 0)) {
+        compare_scan(&builder.scan);
+        demand(!tmini_builder_add(&builder, packet, 0));
     }
+    demand(parser_is_sound(&receiver.parser) && builder_is_sound(&builder));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -130,44 +100,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     }
     const uint8_t max_samples = data[0] == 0 ? 80 : data[0];
-    const size_t chunk = 1u + data[1] % 200u;
-    const bool waits = data[2] % 2 != 0;
-    const tmini_reply_header_t header = {.type = 0x04, .mode = 0, .length = data[3] % 21u};
-    const reference_reply_t reply = {.mode = 0, .type = 0x04, .length = header.length};
-    const reference_options_t options = {.max_samples = max_samples,
-                                         .awaited = waits ? &reply : NULL};
-    const uint8_t *const stream = data + SETUP_SIZE;
-    size -= SETUP_SIZE;
+    const reference_reply_t reply = {.mode = 0, .type = 0x04, .length = data[3] % 21u};
+    const receiver_course_t course = {.chunk = 1u + data[1] % 200u,
+                                      .awaited = data[2] % 2 != 0 ? &reply : NULL,
+                                      .on_packet = gather};
+    const reference_options_t options = {max_samples, course.awaited};
+    if (!TEST_PROTECT()) {
+        abort(); /* An assertion of the receiver's has failed. */
+    }
     expected_count = 0;
     seen = 0;
     scanned = 0;
-    const reference_counts_t counts = reference_decode(stream, size, &options, expect, NULL);
-
-    tmini_ring_t ring;
-    tmini_parser_t parser;
-    tmini_builder_t builder;
-    demand(tmini_ring_init(&ring, memory, sizeof memory, false) == TMINI_OK);
-    demand(tmini_parser_init(&parser, &ring, max_samples) == TMINI_OK);
+    (void)reference_decode(data + SETUP_SIZE, size - SETUP_SIZE, &options, expect, NULL);
     demand(tmini_builder_init(&builder, points, SCAN_POINTS, TMINI_FILTER_BOTH) == TMINI_OK);
-    demand(tmini_parser_await(&parser, waits ? &header : NULL) == TMINI_OK);
-    for (size_t at = 0; at < size; at += chunk) {
-        tmini_ring_write(&ring, stream + at, size - at < chunk ? size - at : chunk);
-        drain(&parser, &builder);
-    }
-    while (tmini_parser_pending(&parser) > 0) {
-        tmini_parser_abandon(&parser);
-        drain(&parser, &builder);
-    }
-    demand(seen == expected_count);
+    receiver_open(&receiver, memory, sizeof memory, max_samples);
+    (void)receiver_compare(&receiver, &course, data + SETUP_SIZE, size - SETUP_SIZE);
     demand(!reference_scan(expected, expected_count, scanned, &(reference_scan_t){0}));
-    tmini_parser_counters_t counters;
-    tmini_parser_counters(&parser, &counters);
-    demand(counters.packets == counts.packets);
-    demand(counters.checksum_errors == counts.checksum_errors);
-    demand(counters.bytes_in_packets == counts.bytes_in_packets);
-    demand(counters.bytes_in_replies == counts.bytes_in_replies);
-    demand(counters.bytes_skipped == counts.bytes_skipped);
-    demand(counters.bytes_overrun == 0);
     return 0;
 }
 

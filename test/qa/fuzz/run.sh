@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Fuzzes the parser and the driver with libFuzzer under the address and undefined-behaviour
+# Fuzzes parser, driver and scans with libFuzzer under the address and undefined-behaviour
 # sanitizers:
 #
 #   test/qa/fuzz/run.sh [SECONDS]      runs each target for this time (60 by default)
@@ -11,13 +11,15 @@
 #
 # An input that fails is a file in build-fuzz/: give it to build-fuzz/fuzz_… to reproduce the
 # failure. Collected inputs stay in build-fuzz/corpus_…, where the next run continues. The first run
-# begins with those in corpus_….txt, one input per line, in base64.
+# begins with those in corpus_….txt, each a word in base64.
 
 set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 support=$root/test/support
 simulator=$root/test/simulator
+system=$root/test/system
+unity=${TMINI_UNITY_DIR:-/usr/share/cmock/vendor/unity}/src
 build=$root/build-fuzz
 compiler=${TMINI_FUZZ_CC:-clang}
 action=${1:-60}
@@ -28,14 +30,17 @@ if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
     exit 0
 fi
 
+targets="fuzz_parser fuzz_driver fuzz_scans"
+
 # sources TARGET: prints its source files, one per line.
 sources() {
     printf '%s\n' "$root/test/qa/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
-        "$support/reference_decoder.c" "$root"/lib/src/*.c
+        "$support/reference_decoder.c" "$support/random.c" "$root"/lib/src/*.c
     case $1 in
-        fuzz_parser) printf '%s\n' "$support/reference_scans.c" "$support/random.c" ;;
-        *) printf '%s\n' "$root/test/qa/fuzz/turning_lidar.c" "$support/random.c" \
-            "$simulator"/sim*.c "$simulator/scene.c" ;;
+        fuzz_parser) printf '%s\n' "$support/receiver.c" "$support/reference_scans.c" \
+            "$unity/unity.c" ;;
+        fuzz_scans) printf '%s\n' "$system/bed.c" "$system/watch.c" "$simulator"/sim*.c \
+            "$simulator/scene.c" "$simulator/link.c" ;;
     esac
 }
 
@@ -44,19 +49,24 @@ compile() {
     program=$1
     target=$2
     shift 2
+    case $target in
+        fuzz_parser) set -- -DUNITY_INCLUDE_CONFIG_H -I"$unity" "$@" ;;
+        fuzz_scans) set -- '-DTMINI_ATOMIC_HEADER="interrupting_atomic.h"' "$@" ;;
+    esac
     sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror \
-        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" \
-        -I"$simulator" -o "$build/$program"
+        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" -I"$simulator" -I"$system" \
+        -o "$build/$program"
 }
 
 # unpack TARGET: writes the inputs in corpus_TARGET.txt to its corpus folder.
 unpack() {
     mkdir -p "$build/corpus_$1"
     count=0
-    while read -r line; do
+    # shellcheck disable=SC2013 # words, not lines
+    for word in $(cat "$root/test/qa/fuzz/corpus_$1.txt"); do
         count=$((count + 1))
-        echo "$line" | base64 -d >"$build/corpus_$1/kept_$count"
-    done <"$root/test/qa/fuzz/corpus_$1.txt"
+        echo "$word" | base64 -d >"$build/corpus_$1/kept_$count"
+    done
 }
 
 fuzz() {
@@ -78,7 +88,7 @@ keep() {
     for input in "$build"/kept/*; do
         base64 -w 0 "$input"
         echo
-    done >"$root/test/qa/fuzz/corpus_$1.txt"
+    done | fmt -w 100 >"$root/test/qa/fuzz/corpus_$1.txt"
     wc -lc "$root/test/qa/fuzz/corpus_$1.txt"
 }
 
@@ -92,20 +102,15 @@ cover() {
 
 mkdir -p "$build"
 case $action in
-    --keep)
-        keep fuzz_parser
-        keep fuzz_driver
-        ;;
-    --coverage)
-        cover fuzz_parser
-        cover fuzz_driver
-        llvm-profdata merge -o "$build/profile" "$build"/fuzz_*.profraw
-        llvm-cov report "$build/cover_fuzz_driver" -object "$build/cover_fuzz_parser" \
-            -instr-profile="$build/profile" "$root"/lib
-        ;;
-    *)
-        fuzz fuzz_parser
-        fuzz fuzz_driver
-        echo "nothing found"
-        ;;
+    --keep) each=keep ;;
+    --coverage) each=cover ;;
+    *) each=fuzz ;;
 esac
+for target in $targets; do
+    "$each" "$target"
+done
+if [ "$each" = cover ]; then
+    llvm-profdata merge -o "$build/profile" "$build"/fuzz_*.profraw
+    llvm-cov report "$build/cover_fuzz_driver" -object "$build/cover_fuzz_parser" \
+        -object "$build/cover_fuzz_scans" -instr-profile="$build/profile" "$root"/lib
+fi
