@@ -6,7 +6,6 @@
  * for, and reports them correctly. */
 
 #include "link.h"
-#include "members.h"
 #include "reference_decoder.h"
 #include "rows.h"
 
@@ -251,85 +250,66 @@ static unsigned ranges(void)
     return sum;
 }
 
+static unsigned kind_named(const char *word)
+{
+    unsigned kind = 0;
+    while (kind < SIM_LINK_KINDS && !row_is(word, sim_link_kind_name((sim_link_kind_t)kind))) {
+        kind++;
+    }
+    return kind;
+}
+
 /* "begun.drop": faults of a kind. */
-static bool look_up(const char *word, size_t length, uint64_t *number)
+static bool is_count_of_faults(const char *word, const char *prefix, const unsigned *faults)
+{
+    row_number_t numbers[SIM_LINK_KINDS];
+    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
+        numbers[kind] = (row_number_t){sim_link_kind_name((sim_link_kind_t)kind), faults[kind]};
+    }
+    return strncmp(word, prefix, strlen(prefix)) == 0 &&
+           row_expects(word + strlen(prefix), numbers);
+}
+
+static bool is_fact(const char *word)
 {
     const size_t spoilt = fate_count - intact_packets();
     decode();
-    const struct {
-        const char *word;
-        uint64_t number;
-    } facts[] = {
-        {"bytes", size},
+    const row_number_t facts[] = {
+        {"bytes", (uint32_t)size},
         {"hz", sim_frequency_chz(&sim)},
-        {"sleeps", sim_next_us(&sim) == SIM_NEVER ? 1 : 0},
+        {"sleeps", sim_next_us(&sim) == SIM_NEVER},
         {"commands", sim.counts.commands},
         {"unknown", sim.counts.unknown_commands},
         {"forbidden", sim.counts.commands_while_scanning},
         {"in_tail", sim.counts.commands_in_tail},
-        {"packets", counts.packets},
-        {"starts", counts.start_packets},
-        {"replies", counts.replies},
-        {"checksum_errors", counts.checksum_errors},
-        {"stray", size - counts.bytes_in_packets - counts.start_packets},
+        {"packets", (uint32_t)counts.packets},
+        {"starts", (uint32_t)counts.start_packets},
+        {"replies", (uint32_t)counts.replies},
+        {"checksum_errors", (uint32_t)counts.checksum_errors},
+        {"stray", (uint32_t)(size - counts.bytes_in_packets - counts.start_packets)},
         {"ranges", ranges()},
         {"turned",
-         packet_count > 0 ? (uint64_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
-        {"intact", intact_packets()},
-        {"spoilt", spoilt},
-        {"latest_intact", fate_count > 0 && fates[fate_count - 1u].packet.intact ? 1 : 0},
-        {"untold", absolute(sim.counts.packets, fate_count)},
-        {"unexplained", absolute(heard.ended[SIM_LINK_CUT], spoilt)},
-        {"unaccounted",
-         absolute(size + heard.begun[SIM_LINK_DROP], wire.passed + heard.begun[SIM_LINK_INSERT])},
-        {"new", size - marked},
-        {"faulty", sim_link_is_faulty(&wire) ? 1 : 0},
-        {"last_fault", sim_link_last_fault_us(&wire)},
+         packet_count > 0 ? (uint32_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
+        {"intact", (uint32_t)intact_packets()},
+        {"spoilt", (uint32_t)spoilt},
+        {"latest_intact", fate_count > 0 && fates[fate_count - 1u].packet.intact},
+        {"untold", (uint32_t)absolute(sim.counts.packets, fate_count)},
+        {"unexplained", (uint32_t)absolute(heard.ended[SIM_LINK_CUT], spoilt)},
+        {"unaccounted", (uint32_t)absolute(size + heard.begun[SIM_LINK_DROP],
+                                           wire.passed + heard.begun[SIM_LINK_INSERT])},
+        {"new", (uint32_t)(size - marked)},
+        {"faulty", sim_link_is_faulty(&wire)},
+        {"last_fault", (uint32_t)sim_link_last_fault_us(&wire)},
     };
-    const size_t prefix = strlen("begun.");
-    for (unsigned kind = 0; kind < SIM_LINK_KINDS && length > prefix; kind++) {
-        const char *const name = sim_link_kind_name((sim_link_kind_t)kind);
-        if (strlen(name) == length - prefix && strncmp(word + prefix, name, length - prefix) == 0) {
-            *number = word[0] == 'b' ? heard.begun[kind] : heard.ended[kind];
-            return true;
-        }
-    }
-    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++) {
-        if (strlen(facts[i].word) == length && strncmp(facts[i].word, word, length) == 0) {
-            *number = facts[i].number;
-            return true;
-        }
-    }
-    return false;
-}
-
-/* A fact of this number; at least, at most. */
-static bool is_fact(const char *word)
-{
-    const size_t length = strcspn(word, ":<>");
-    uint64_t is = 0;
-    if (word[length] == '\0' || !look_up(word, length, &is)) {
-        return false;
-    }
-    const uint64_t number = strtoull(&word[length + 1], NULL, 0);
-    char text[80];
-    (void)snprintf(text, sizeof text, "%s, but it is %llu", word, (unsigned long long)is);
-    TEST_ASSERT_TRUE_MESSAGE(word[length] == ':'   ? is == number
-                             : word[length] == '>' ? is > number
-                                                   : is < number,
-                             text);
-    return true;
+    return row_expects(word, facts) || is_count_of_faults(word, "begun.", heard.begun) ||
+           is_count_of_faults(word, "ended.", heard.ended);
 }
 
 /* A setting of the lidar, or the mean gap of a fault of the wire; before anything else: powers up
  * again. */
 static bool is_setting(const char *word)
 {
-    const struct {
-        const char *word;
-        void *member;
-        size_t size;
-    } members[] = {
+    const row_member_t members[] = {
         {"frequency", MEMBER(config.frequency_chz)},
         {"latency", MEMBER(config.reply_latency_ms)},
         {"tail", MEMBER(config.stop_tail_ms)},
@@ -342,21 +322,14 @@ static bool is_setting(const char *word)
         {"sample_size", MEMBER(config.sample_size)},
         {"blind_every", MEMBER(config.blind_every)},
     };
-    for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
-        if (row_is(word, members[i].word)) {
-            member_store(members[i].member, members[i].size, row_number(word));
-            power_up();
-            return true;
-        }
+    const unsigned kind = kind_named(word);
+    if (kind < SIM_LINK_KINDS) {
+        wire_config.mean_gap[kind] = row_number(word);
+    } else if (!row_stores(word, members)) {
+        return false;
     }
-    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
-        if (row_is(word, sim_link_kind_name((sim_link_kind_t)kind))) {
-            wire_config.mean_gap[kind] = row_number(word);
-            power_up();
-            return true;
-        }
-    }
-    return false;
+    power_up();
+    return true;
 }
 
 /* The next bytes of the stream. */
@@ -444,10 +417,7 @@ static void send_raw(const char *hex)
 /* "stall:100" */
 static void force(const char *text)
 {
-    unsigned kind = 0;
-    while (kind < SIM_LINK_KINDS && !row_is(text, sim_link_kind_name((sim_link_kind_t)kind))) {
-        kind++;
-    }
+    const unsigned kind = kind_named(text);
     TEST_ASSERT_TRUE_MESSAGE(kind < SIM_LINK_KINDS, text);
     sim_link_force(&wire, (sim_link_kind_t)kind, row_number(text), now);
 }
