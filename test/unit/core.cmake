@@ -19,7 +19,7 @@ tmini_add_unit_test(test_decoder SOURCES test_decoder.c
 tmini_add_unit_test(test_sectors SOURCES test_sectors.c
     LIBRARIES tmini_test_rows tmini_test_receiver)
 tmini_add_unit_test(test_ranges SOURCES test_ranges.c LIBRARIES tmini_test_rows)
-tmini_add_unit_test(test_mount SOURCES test_mount.c)
+tmini_add_unit_test(test_mount SOURCES test_mount.c LIBRARIES tmini_test_rows)
 tmini_add_unit_test(test_cartesian SOURCES test_cartesian.c)
 tmini_add_unit_test(test_fields SOURCES test_fields.c
     LIBRARIES tmini_test_rows tmini_test_support)
