@@ -9,7 +9,6 @@ import pty
 import re
 import signal
 import termios
-from pathlib import Path
 
 import pyte
 import pytest
@@ -18,6 +17,7 @@ from lidar_bytes import packet, timed, turn
 
 LIDAR, NEAREST, RIGHT, BACK = "▲", "◆", "⠁", "⠈"
 ROOM = "recordings/sim-6hz.bin"  # Two seconds: somewhat more than 8 scans.
+ROOM_BYTES, DAMAGED_BYTES = ((HERE.parent / f"recordings/sim-6hz{name}.bin").read_bytes() for name in ("", "-damaged"))
 
 # A point every 90 degrees: 1 m in front, 2 m to the right, 3 m behind, 4 m to the left.
 CROSS = turn([(1000, 10, 0), (2000, 20, 0), (3000, 30, 0), (4000, 40, 0)])
@@ -55,6 +55,35 @@ def assert_ends(view, status=0):
 def quit_(view):
     view.press("q")
     assert_ends(view)
+
+
+def play(view, story, device=None):
+    """Does and sees what the story tells; between two steps is " | ". A step of these words:
+
+        press KEYS; wait MS; ends STATUS (0), as before it began
+        shows TEXT, lacks TEXT      on the screen, now; any other text is awaited
+        freeze, thaw, unplug        the lidar; idle: it is awaited that it has stopped"""
+    for step in story.split(" | "):
+        word, _, rest = step.partition(" ")
+        if word == "press":
+            view.press(rest)
+        elif word == "wait":
+            view.wait(int(rest))
+        elif word == "ends":
+            assert_ends(view, int(rest or 0))
+        elif word in ("shows", "lacks"):
+            assert (rest in view.text) == (word == "shows"), step
+        elif step in ("freeze", "thaw", "unplug"):
+            getattr(device, step)()
+        elif step == "idle":
+            device.wait_for_log("stopping -> idle")
+        else:
+            view.wait_for(step)
+
+
+def stories(told):
+    """Each is a test, whose name is a claim."""
+    return pytest.mark.parametrize("told", told.values(), ids=[name.replace(" ", "_") for name in told])
 
 
 def colours(view):
@@ -113,13 +142,6 @@ def test_the_colour_scale_does_not_shrink(see, folder):
 # ---- Keys and size
 
 
-def test_keys_zoom(see, cross):
-    view = see(cross)
-    for keys, shown in (("", "4 m, auto\n"), ("+", "3 m\n"), ("+", "2 m\n"), ("---", "6 m\n"), ("a", "4 m, auto\n")):
-        view.press(keys)
-        view.wait_for("range     " + shown)
-
-
 def test_q_ends(see, cross):
     view = see(cross)
     assert view.is_other_screen and pyte.modes.DECTCEM not in view.screen.mode
@@ -153,34 +175,31 @@ def test_a_small_terminal_has_the_picture_the_state_and_the_way_out(see):
     quit_(view)
 
 
-def test_escape_ends_and_an_arrow_does_not(see, cross):
-    view = see(cross)
-    view.press("\033[A")  # The key "up" has no function.
-    view.press("+")
-    view.wait_for("range     3 m\n")
-    view.press("\033")
-    assert_ends(view)
-
-
 # ---- Recordings
 
 
-def test_a_recording_can_be_paused_stepped_through_and_played_again(see):
-    view = see(ROOM)
-    for key, shown in ((",", "scan 7 "), (",", "scan 6 "), (".", "scan 7 ")):
-        view.press(key)
-        view.wait_for(shown)
-        assert "paused" in view.text
-    view.wait(1000)  # It stays paused.
-    assert "scan 7 " in view.text
-    view.press(" ")
-    view.wait_for("end of the recording")
-    assert "scan 8 " in view.text
-    view.press("\033[D")  # Five seconds back is the beginning.
-    view.wait_for("playing")
-    view.wait_for("scan 2 ")
-    view.press(">")
-    view.wait_for("end of the recording")
+@stories({
+    "keys zoom": (
+        CROSS, "end of | range     4 m, auto\n | press + | range     3 m\n | press + | range     2 m\n | press --- | "
+        "range     6 m\n | press a | range     4 m, auto\n"),
+    "escape ends and an arrow does not": (
+        CROSS, "end of | press \033[A | press + | range     3 m\n | press \033 | ends"),
+    "ctrl c gives the terminal back": (CROSS, "end of | press \x03 | ends"),
+    "a recording can be paused stepped through and played again": (  # Paused, it stays.
+        ROOM_BYTES, "end of | press , | scan 7 | shows paused | press , | scan 6 | shows paused | press . | scan 7 | "
+        "shows paused | wait 1000 | shows scan 7 | press   | end of the recording | shows scan 8 | press \033[D | "
+        "playing | scan 2 | press > | end of the recording"),  # Five seconds back is the beginning.
+    "after a pause a recording goes on where it was": (  # 2 s would be 12 scans.
+        3 * ROOM_BYTES, "scan 2 | press   | paused | wait 2000 | shows scan 2 | press   | scan 3 | press q | ends"),
+    "a damaged recording says so": (  # 32 of 298.
+        DAMAGED_BYTES, "end of | shows   incomplete scan  | shows damaged   10.7 %\n | shows health    unknown\n"),
+    "a file that is no recording is reported at once": (
+        b"nothing of interest", "ends 1 | shows holds no lidar packet"),
+})
+def test_a_recording(terminal, folder, told):
+    content, story = told
+    (folder / "some").write_bytes(content)
+    play(terminal("view", "some"), story)
 
 
 def test_an_arrow_goes_five_seconds(see, folder):
@@ -206,41 +225,9 @@ def test_a_timed_recording_is_played_at_its_own_pace(terminal, folder, clock):
     quit_(view)
 
 
-# The recording's time stands still during the pause: 2 s would be 12 scans.
-def test_after_a_pause_a_recording_goes_on_where_it_was(terminal, folder):
-    (folder / "room.bin").write_bytes(4 * Path(ROOM).read_bytes())
-    view = terminal("view", "room.bin")
-    view.wait_for("scan 2 ")
-    view.press(" ")
-    view.wait_for("paused")
-    view.wait(2000)
-    assert "scan 2 " in view.text
-    view.press(" ")
-    view.wait_until(lambda: "scan 2 " not in view.text)
-    assert "scan 3 " in view.text
-    quit_(view)
-
-
 def test_keys_come_from_the_terminal_also_when_the_recording_comes_through_a_pipe(terminal):
-    view = terminal(shell=f"cat {ROOM} | '{TMINI}' view -")
-    view.wait_for("end of the recording")
-    assert "scan 8 " in view.text
-    view.press("+")
-    view.wait_for("range     4 m\n")
-    quit_(view)
-
-
-def test_a_damaged_recording_says_so(see):
-    text = see("recordings/sim-6hz-damaged.bin").text
-    assert "  incomplete scan " in text
-    assert "damaged   10.7 %\n" in text  # 32 of 298.
-    assert "health    unknown\n" in text
-
-
-def test_a_file_that_is_no_recording_is_reported_at_once(terminal):
-    view = terminal("view", "recordings/README.md")
-    assert_ends(view, 1)
-    assert "holds no lidar packet" in view.text
+    play(terminal(shell=f"cat {ROOM} | '{TMINI}' view -"),
+         "end of the recording | shows scan 8 | press + | range     4 m\n | press q | ends")
 
 
 def test_without_a_terminal_there_is_no_view(tmini, cross):
@@ -250,7 +237,7 @@ def test_without_a_terminal_there_is_no_view(tmini, cross):
 
 # `decode` and `plot` show it, but only on a terminal.
 def test_reading_a_long_recording_shows_its_progress(terminal, folder):
-    (folder / "long.bin").write_bytes(1024 * Path(ROOM).read_bytes())
+    (folder / "long.bin").write_bytes(1024 * ROOM_BYTES)
     run = terminal(shell=f"'{TMINI}' decode long.bin | tail -n 1")
     run.wait_for("100 % of long.bin")
     run.wait_for("LastCRC bytes")
@@ -285,12 +272,6 @@ def test_a_dumb_terminal_gets_one_picture_below_the_other(see, cross, environmen
 
 
 # ---- Other ways to end
-
-
-def test_ctrl_c_gives_the_terminal_back(see, cross):
-    view = see(cross)
-    view.press("\x03")
-    assert_ends(view)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
@@ -333,39 +314,19 @@ def test_a_second_signal_gives_the_terminal_back_and_stops_the_lidar(terminal, l
 # ---- Live
 
 
-def test_a_lidar_is_shown_live_and_stopped_at_the_end(terminal, lidar):
-    device = lidar()
+@stories({
+    "a lidar is shown live and stopped at the end":
+        ("", "scan 5 | shows scanning | shows behind right | press q | ends | idle"),
+    "a lidar that falls silent is called so until it is back":
+        ("", "scan 2 | freeze | SILENT: starting it again\n | thaw | scanning\n | lacks SILENT | press q | ends"),
+    "a blocked rotor is shown":  # Its name has a separate line.
+        ("--blocked", "health    FAULTY | faulty: encoder (is the rotor blocked?)\n | \n q quit   + - zoom   a auto "),
+    "a pulled cable ends the view with a message":
+        ("", "scan 2 | unplug | ends 1 | shows has gone: the adapter was unplugged"),
+})
+def test_a_lidar_live(terminal, lidar, told):
+    options, story = told
+    device = lidar(*options.split())
     view = terminal("view", "-p", device.port)
-    view.wait_for("scan 5 ")
-    assert "scanning" in view.text and "behind right" in view.text
-    quit_(view)
-    device.wait_for_log("stopping -> idle")
-
-
-def test_a_lidar_that_falls_silent_is_called_so_until_it_is_back(terminal, lidar):
-    device = lidar()
-    view = terminal("view", "-p", device.port)
-    view.wait_for("scan 2 ")
-    device.freeze()
-    view.wait_for("SILENT: starting it again\n")
-    device.thaw()
-    view.wait_for("scanning\n")
-    assert "SILENT" not in view.text
+    play(view, story, device)
     assert b"fallen silent" not in view.raw  # A remark would spoil the picture.
-    quit_(view)
-
-
-def test_a_blocked_rotor_is_shown(terminal, lidar):
-    view = terminal("view", "-p", lidar("--blocked").port)
-    view.wait_for("health    FAULTY")
-    view.wait_for("faulty: encoder (is the rotor blocked?)\n")  # It has a separate line.
-    view.wait_for("\n q quit   + - zoom   a auto ")
-
-
-def test_a_pulled_cable_ends_the_view_with_a_message(terminal, lidar):
-    device = lidar()
-    view = terminal("view", "-p", device.port)
-    view.wait_for("scan 2 ")
-    device.unplug()
-    assert_ends(view, 1)
-    assert "has gone: the adapter was unplugged" in view.text
