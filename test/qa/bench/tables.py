@@ -124,13 +124,13 @@ def summary(figures):
     m4 = figures["targets"]["cortex-m4", "-Os"]
     m0 = figures["targets"]["cortex-m0", "-Os"]
     rows = [
-        ["flash, full driver", *(f["flash"]["driver"]["own"] for f in (m0, m4))],
-        ["RAM per lidar, excluding your buffers",
+        ["flash, full driver, bytes", *(f["flash"]["driver"]["own"] for f in (m0, m4))],
+        ["RAM per lidar, bytes, excluding your buffers",
          *(f["counts"]["tmini_t"] for f in (m0, m4))],
-        ["stack, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
+        ["stack, bytes, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
         ["instructions in the receive interrupt's call",
          *(f["counts"]["feed worst"] for f in (m0, m4))],
-        ["instructions per byte, in to point out, fed by blocks",
+        ["instructions per byte, from byte to point, fed by blocks",
          *(one(sum(f["counts"]["costs"]["blocks"])) for f in (m0, m4))],
         ["load at full data rate, 8 and 168 MHz, an interrupt per byte",
          *(one(load.percent(f["counts"], megahertz, "bytes")) + " %"
