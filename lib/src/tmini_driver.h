@@ -146,7 +146,7 @@ int tmini_command_reply(tmini_t *lidar, const uint8_t *content);
 /* What a packet means in the current phase, while none is expected. */
 typedef enum {
     TMINI_PACKET_UNWANTED, /* The lidar should be idle: its stop was lost on the wire. */
-    TMINI_PACKET_IGNORED,  /* Of the tail after a stop (section 9.10), or nothing is known. */
+    TMINI_PACKET_IGNORED,  /* No news: for example, of the tail after a stop (section 9.10). */
     TMINI_PACKET_FIRST,    /* The lidar scans from now on, also if the reply to its start was
                             * lost. */
 } tmini_packet_meaning_t;

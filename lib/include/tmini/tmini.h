@@ -472,7 +472,7 @@ typedef struct {
                             * none. */
     uint8_t phase;         /* A tmini_phase_t. */
     uint8_t code;          /* The command being sent. */
-    uint8_t unsent;        /* How many of its two bytes the port has not taken yet, and two bits. */
+    uint8_t unsent;        /* TMINI_UNSENT until the port has taken both bytes, and two bits. */
     uint8_t attempts_left; /* After the current one. */
     bool is_repeated;      /* Not the first attempt: a late reply to an earlier one may come. */
     uint8_t steps;         /* Frequency steps sent. */
