@@ -53,6 +53,7 @@ void rig_open(void)
 void rig_init(void)
 {
     rig.in_turn = false;
+    rig.position = 0;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&rig.lidar, &rig.config));
 }
 
@@ -60,7 +61,16 @@ void rig_init(void)
 
 void rig_feed(const uint8_t *bytes, size_t count)
 {
-    tmini_feed(&rig.lidar, bytes, count);
+    if (!rig.config.rx_dma && count == 1) {
+        tmini_feed_byte(&rig.lidar, bytes[0]);
+    } else if (!rig.config.rx_dma) {
+        tmini_feed(&rig.lidar, bytes, count);
+    } else {
+        for (size_t i = 0; i < count; i++) {
+            rig.config.rx_buffer[rig.position++ % rig.config.rx_size] = bytes[i];
+        }
+        tmini_feed_dma(&rig.lidar, rig.position % rig.config.rx_size);
+    }
 }
 
 void rig_feed_byte(uint8_t byte)

@@ -27,6 +27,7 @@ typedef struct {
     int takes; /* How many bytes the port takes per call. */
     uint32_t port_restarts;
     uint8_t rx[RIG_RX_SIZE];
+    size_t position; /* How many bytes DMA has written. */
     tmini_point_t points[RIG_POINTS];
     uint8_t crc;  /* Of the turn fed last. */
     bool in_turn; /* A turn with CT information has begun. */
@@ -42,6 +43,7 @@ void rig_init(void);
 
 /* ---- Bytes from the lidar ---- */
 
+/* By the receive interrupt, byte by byte or as a block, or by DMA if it is configured. */
 void rig_feed(const uint8_t *bytes, size_t count);
 void rig_feed_byte(uint8_t byte);
 
