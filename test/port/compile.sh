@@ -5,6 +5,7 @@
 # Compiles the ports with the stand-ins for their platforms:
 #
 #   compile.sh headers                   each header alone, as C99 and as C++11, by GCC and Clang
+#   compile.sh sketches                  each Arduino sketch, as on several boards
 #   compile.sh esp32-xtensa|esp32-riscv|esp32-clang|cortex-m4-clang
 #
 # Xtensa by Debian's compiler for the ESP8266, the nearest one available.
@@ -64,6 +65,32 @@ check_headers() {
     done
 }
 
+# check_sketch SKETCH NAME=VALUE…
+check_sketch() {
+    sketch=$1
+    shift
+    echo "$sketch $*"
+    # shellcheck disable=SC2046 # one option for each name
+    printf '#include <Arduino.h>\n#include "%s"\n' "$sketch" |
+        c++ -std=c++11 -Wall -Wextra -Werror -fsyntax-only -I "$root/lib/include" \
+            -I "$root/port/arduino" -I "$here/arduino/arduino_stub" \
+            $(printf -- '-D%s ' ARDUINO=10819 "$@") -x c++ -
+}
+
+check_sketches() {
+    need_compiler c++ -x c++
+    for sketch in "$root"/examples/esp32_arduino/*/*.ino; do
+        check_sketch "$sketch"
+        check_sketch "$sketch" ARDUINO_ARCH_RP2040
+        check_sketch "$sketch" CORE_TEENSY __IMXRT1062__
+        for chip in ESP32 ESP32S3 ESP32C3; do
+            # A C3 has no third serial port.
+            case $sketch$chip in *TwoLidars.inoESP32C3) continue ;; esac
+            check_sketch "$sketch" ESP32 "CONFIG_IDF_TARGET_$chip=1"
+        done
+    done
+}
+
 # check_ports "PORT…" COMPILER…
 check_ports() {
     ports=$1
@@ -81,6 +108,7 @@ check_ports() {
 picolibc="riscv64-unknown-elf-gcc --specs=picolibc.specs"
 case ${1:-} in
     headers) check_headers ;;
+    sketches) check_sketches ;;
     esp32-xtensa)
         # The compiler does not search Debian's folders of the C library's headers by default.
         check_ports esp32 xtensa-lx106-elf-gcc -mlongcalls -std=gnu17 -DMODEL_ESP32 \
@@ -101,7 +129,7 @@ case ${1:-} in
             -mcpu=cortex-m4 -std=c99 -isystem "$(headers_of arm-none-eabi-gcc -mcpu=cortex-m4)"
         ;;
     *)
-        sed -n '5,12s/^# \{0,1\}//p' "$0" >&2
+        sed -n '5,13s/^# \{0,1\}//p' "$0" >&2
         exit 2
         ;;
 esac
