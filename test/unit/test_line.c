@@ -165,6 +165,11 @@ static const row_t rows[] IN_FLASH = {
         "held-to:65548 look:1:13 arrived:65548 10-hz held-to:65549 look:1:13 arrived:13"),
     ROW(bytes_that_had_arrived_before_explain_nothing,
         "arrive:100 after:50 doubt:0 arrive:100 after:51 doubt:1"),
+    /* 100 had arrived before, and 180 have now: 80 new ones take 6 ms. */
+    ROW(of_the_bytes_fed_and_held_only_those_that_are_new_explain_time,
+        "arrive:100 held-to:180 look:20:130 late:14"),
+    ROW(what_a_port_holds_explains_time_once_it_feeds, /* 100 bytes explain 7 of 80 ms. */
+        "held-to:100 look:40:0 look:40:100 doubt:1"),
     ROW(a_doubt_reaches_to_the_last_byte_that_the_port_holds, /* The silence may be before it. */
         "held-to:144 look:60:13 doubt:0 held-to:164 look:52:13 doubt:1 doubtful-to:164"),
     ROW(bytes_that_had_arrived_before_do_not_end_a_silence, /* 100 arrive; 87 are fed later. */
@@ -204,7 +209,7 @@ static const row_t rows[] IN_FLASH = {
     /* More than a second does not count as a step back. */
     ROW(a_clock_that_steps_back_by_more_than_10_ms_may_hide_a_silence,
         "look:-10:13 doubt:0 look:-1:0 doubt:1 doubtful-to:13 held-to:77 look:0:20 doubtful-to:77 "
-        "10-hz look:-1001:0 doubt:0"),
+        "10-hz look:-1001:0 doubt:0 10-hz look:5332:70000 doubt:0 look:-11:13 doubtful-to:70013"),
     /* ---- A program that is behind ---- */
     ROW(a_pause_between_polls_is_no_work, "2( look:200:13 behind:0 )"),
     ROW(a_pause_counts_as_work_if_the_port_still_holds_bytes,
@@ -215,6 +220,8 @@ static const row_t rows[] IN_FLASH = {
     /* ---- When a packet came ---- */
     ROW(a_packet_came_before_the_bytes_after_it, /* 70,000 bytes take 5332 ms, 100 take 7. */
         "look:9000:70000 arrival:8668 read:69900 arrival:13993"),
+    ROW(a_packet_came_before_the_bytes_that_the_port_holds, /* 132 bytes take 10 ms. */
+        "held-to:145 look:20:13 read:13 arrival:5010"),
     ROW(a_packet_may_come_half_a_turn_after_the_one_before,
         "open:70000 packet:70050:0 packet:70051:1 close packet:70051:0"),
 };

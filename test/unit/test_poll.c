@@ -86,6 +86,9 @@ static const row_t tales[] IN_FLASH = {
         PAUSES "95( ~1 !NONE ) ~1 " EIGHT_PACKETS "!SCAN"),
     ROW(packets_cut_to_a_few_bytes_for_too_long_end_the_scan,
         PAUSES "9( ~10 <x:1122334455 !NONE ) <P !SCAN count:9"),
+    /* ---- The beginning of the clock ---- */
+    ROW(before_the_clocks_first_tick_a_failed_port_is_not_asked_again,
+        "clock:0 takes:-1 stop 2( !NONE ) ~1 !FAILED ?WRITE"),
     /* ---- The wraparound of the clock, in every wait ---- */
     ROW(waiting_for_a_quiet_line_survives_it, "clock:-26 stop >65 <junk +50 !STOPPED"),
     ROW(waiting_for_a_stop_survives_it, "clock:-300 stop >65 30( <junk +20 ) >65"),
