@@ -90,6 +90,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_stop_during_a_stop_changes_nothing, "stop >65 +20 stop +30 !STOPPED"),
     ROW(a_start_that_has_not_been_polled_is_not_reported_after_a_stop,
         "idle start >0D <600 >60 <scan <S <S !STARTED stop >65 +50 !STOPPED"),
+    ROW(a_question_after_a_stop_leaves_the_report_of_what_the_stop_ended,
+        "idle start >0D stop >65 info !FAILED ?ABORTED +50 !STOPPED >90 <info !INFO"),
     ROW(a_start_follows_a_stop,
         "scans stop >65 start @STARTING +50 !STOPPED >0D <600 >60 <scan <S !STARTED"),
     ROW(stop_set_start_sets_before_it_starts,
