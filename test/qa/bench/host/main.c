@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Feeds a recording to the library on this computer, for an instruction counter to watch:
+/* Feeds a recording to the emulated program's lidar (emulated/main.c) on this computer, for an
+ * instruction counter to watch:
  *
  *   host bytes|blocks FILE BYTES   feeds BYTES at a time, then polls until there is no event
  *   host decode FILE BYTES         feeds blocks to only ring, parser, packet and scan
@@ -15,71 +16,57 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define BYTES_PER_MS 13u /* The lidar's data rate. */
 #define CAPACITY (1u << 20)
 
+extern tmini_t bench_lidar;
+extern uint32_t bench_now_ms;
+extern uint8_t bench_sent;
+void bench_begin(bool dma, bool streaming, size_t rx_size, unsigned filter);
+
 static uint8_t recording[CAPACITY];
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
-static tmini_t lidar;
 static tmini_parser_t parser;
 static limit_point_t limit_points[CAPACITY / 3];
-static uint32_t now_ms;
-static uint8_t sent;
-
-static int note_command(void *context, const uint8_t *bytes, size_t count)
-{
-    (void)context;
-    sent = bytes[count - 1];
-    return (int)count;
-}
-
-static uint32_t read_clock(void *context)
-{
-    (void)context;
-    return now_ms;
-}
-
-static const tmini_port_t port = {.write = note_command, .now_ms = read_clock};
 
 static void poll_all(void)
 {
-    while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
+    while (tmini_poll(&bench_lidar) != TMINI_EVENT_NONE) {
     }
 }
 
 static void start(void)
 {
     static const uint8_t reply[] = {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
-    (void)tmini_start(&lidar);
-    while (sent != TMINI_COMMAND_START) {
-        now_ms += 10;
+    (void)tmini_start(&bench_lidar);
+    while (bench_sent != TMINI_COMMAND_START) {
+        bench_now_ms += 10;
         poll_all();
     }
-    tmini_feed(&lidar, reply, sizeof reply);
+    tmini_feed(&bench_lidar, reply, sizeof reply);
     poll_all();
 }
 
 static void feed_bytes(const uint8_t *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        tmini_feed_byte(&lidar, bytes[i]);
+        tmini_feed_byte(&bench_lidar, bytes[i]);
     }
 }
 
 static void drive_all(size_t size, size_t block, bool by_bytes)
 {
-    const uint32_t begin_ms = now_ms;
+    const uint32_t begin_ms = bench_now_ms;
     for (size_t at = 0; at < size; at += block) {
         const size_t count = size - at < block ? size - at : block;
         if (by_bytes) {
             feed_bytes(&recording[at], count);
         } else {
-            tmini_feed(&lidar, &recording[at], count);
+            tmini_feed(&bench_lidar, &recording[at], count);
         }
-        now_ms = begin_ms + (uint32_t)((at + count) / BYTES_PER_MS);
+        bench_now_ms = begin_ms + (uint32_t)((at + count) / BYTES_PER_MS);
         poll_all();
     }
 }
@@ -129,21 +116,17 @@ static size_t read_file(const char *name)
 
 int main(int argc, char **argv)
 {
-    const tmini_config_t config = {.port = &port,
-                                   .rx_buffer = rx,
-                                   .rx_size = sizeof rx,
-                                   .points = points,
-                                   .max_points = TMINI_SCAN_POINTS_TYPICAL};
     const size_t size = argc == 4 ? read_file(argv[2]) : 0;
     const size_t block = argc == 4 ? (size_t)strtoul(argv[3], NULL, 10) : 0;
     tmini_counters_t counters;
-    if (size == 0 || block == 0 || tmini_init(&lidar, &config) != TMINI_OK) {
+    if (size == 0 || block == 0) {
         fputs("usage: host bytes|blocks|decode|limit FILE BYTES\n", stderr);
         return 2;
     }
+    bench_begin(false, false, sizeof rx, TMINI_FILTER_NONE);
     start();
     counted_run(argv[1], size, block);
-    tmini_counters(&lidar, &counters);
+    tmini_counters(&bench_lidar, &counters);
     printf("%lu\n", (unsigned long)(counters.packets + parser.counters.packets));
     return 0;
 }
