@@ -4,7 +4,6 @@
 #include "tale.h"
 
 #include "invariants.h"
-#include "members.h"
 #include "tmini/tmini_names.h"
 
 #include <stdio.h>
@@ -59,7 +58,10 @@ static const entry_t errors[] = {
     {NULL, 0},
 };
 
-static const tale_phrase_t beginnings[] = {
+static const tale_phrase_t phrases[] = {
+    {"off", "recovery:1"},
+    {"listen", "listening:1"},
+    {"dma", "by-dma:1"},
     {"idle", "stop >65 +50 !STOPPED @IDLE"},
     {"starts", "idle start >0D <600 >60"},
     {"scans", "starts <scan <S !STARTED @SCANNING"},
@@ -311,46 +313,32 @@ static bool call(const char *word, int *status)
     return true;
 }
 
-/* A word before the set-up gives a member of the configuration its number, or this one. */
+/* A word before the set-up gives a member of the configuration its number, or 0. */
 static bool configure(const char *word)
 {
-    const struct {
-        const char *word;
-        void *member;
-        size_t size;
-        unsigned number;
-    } members[] = {
-        {"wish", MEMBER(rig.config.frequency_chz), 0},
-        {"off", MEMBER(rig.config.recovery), TMINI_RECOVERY_OFF},
-        {"recovery", MEMBER(rig.config.recovery), 0},
-        {"listen", MEMBER(rig.config.listen_only), true},
-        {"no-port", MEMBER(rig.config.port), 0},
-        {"no-write", MEMBER(rig.port.write), 0},
-        {"no-restart", MEMBER(rig.port.restart), 0},
-        {"no-clock", MEMBER(rig.port.now_ms), 0},
-        {"no-rx", MEMBER(rig.config.rx_buffer), 0},
-        {"rx", MEMBER(rig.config.rx_size), 0},
-        {"dma", MEMBER(rig.config.rx_dma), true},
-        {"samples", MEMBER(rig.config.max_samples), 0},
-        {"no-points", MEMBER(rig.config.points), 0},
-        {"points", MEMBER(rig.config.max_points), 0},
-        {"filter", MEMBER(rig.config.filter), 0},
-        {"backoff", MEMBER(rig.timing.back_off_max_ms), 0},
-        {"attempts", MEMBER(rig.timing.max_attempts), 0},
-        {"quiet", MEMBER(rig.timing.quiet_line_ms), 0},
-        {"reply", MEMBER(rig.timing.reply_timeout_ms), 0},
-        {"frame", MEMBER(rig.timing.frame_timeout_ms), 0},
-        {"pause", MEMBER(rig.timing.max_pause_ms), 0},
+    const row_member_t members[] = {
+        {"wish", MEMBER(rig.config.frequency_chz)},
+        {"recovery", MEMBER(rig.config.recovery)},
+        {"listening", MEMBER(rig.config.listen_only)},
+        {"no-port", MEMBER(rig.config.port)},
+        {"no-write", MEMBER(rig.port.write)},
+        {"no-restart", MEMBER(rig.port.restart)},
+        {"no-clock", MEMBER(rig.port.now_ms)},
+        {"no-rx", MEMBER(rig.config.rx_buffer)},
+        {"rx", MEMBER(rig.config.rx_size)},
+        {"by-dma", MEMBER(rig.config.rx_dma)},
+        {"samples", MEMBER(rig.config.max_samples)},
+        {"no-points", MEMBER(rig.config.points)},
+        {"points", MEMBER(rig.config.max_points)},
+        {"filter", MEMBER(rig.config.filter)},
+        {"backoff", MEMBER(rig.timing.back_off_max_ms)},
+        {"attempts", MEMBER(rig.timing.max_attempts)},
+        {"quiet", MEMBER(rig.timing.quiet_line_ms)},
+        {"reply", MEMBER(rig.timing.reply_timeout_ms)},
+        {"frame", MEMBER(rig.timing.frame_timeout_ms)},
+        {"pause", MEMBER(rig.timing.max_pause_ms)},
     };
-    const char *const at = strchr(word, ':');
-    for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
-        const size_t number = at != NULL ? (size_t)strtoul(at + 1, NULL, 0) : members[i].number;
-        if (row_is(word, members[i].word)) {
-            member_store(members[i].member, members[i].size, number);
-            return true;
-        }
-    }
-    return false;
+    return row_stores(word, members);
 }
 
 void tale_set_up(void)
@@ -460,8 +448,7 @@ static bool tell_phrase(const tale_phrase_t *phrases, const char *word)
 /* Words for the test's own means. */
 static bool tell_means(const char *word)
 {
-    const char *const at = strchr(word, ':');
-    const uint32_t number = at != NULL ? (uint32_t)atol(at + 1) : 0;
+    const uint32_t number = row_number(word);
     if (strcmp(word, "/") == 0) {
         tale_begin();
     } else if (strcmp(word, "refused") == 0) {
@@ -473,11 +460,11 @@ static bool tell_means(const char *word)
     } else if (strcmp(word, "bad-crc") == 0) {
         rig.crc ^= 1u;
     } else if (row_is(word, "held")) {
-        tmini_feed_held(&rig.lidar, strtoul(word + 5, NULL, 0));
+        tmini_feed_held(&rig.lidar, number);
     } else if (row_is(word, "takes")) {
-        rig.takes = atoi(at + 1);
+        rig.takes = (int)number;
     } else if (row_is(word, "turns")) {
-        feed_turns(at + 1);
+        feed_turns(row_text(word));
     } else if (row_is(word, "clock")) {
         rig.now_ms = number;
     } else if (row_is(word, "back")) {
@@ -519,7 +506,7 @@ static void tell_word(char *word)
     memcpy(tale.word, word, strlen(word) + 1);
     if (strchr("><+~!@#?", word[0]) != NULL) {
         tell_sign(word);
-    } else if (tell_phrase(beginnings, word) || tell_phrase(tale_phrases, word) ||
+    } else if (tell_phrase(phrases, word) || tell_phrase(tale_phrases, word) ||
                tell_means(word) || (tale_words != NULL && tale_words(word))) {
         return;
     } else if (!tale.is_set_up || !expect_number(word)) {

@@ -14,7 +14,8 @@ PACKET = 131  # Bytes per block: about a packet, or 10 ms.
 def build(folder):
     program = folder / "host"
     run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I", ROOT / "lib" / "include",
-        "-I", HERE, *(HERE / name for name in ("host/main.c", "emulated/main.c", "limit.c")), *LIB_SOURCES, "-o", program)
+        "-I", HERE, *(HERE / name for name in ("host/main.c", "emulated/main.c", "limit.c")), *LIB_SOURCES,
+        "-o", program)
     return program
 
 
