@@ -71,11 +71,10 @@ sim_frame_t *sim_line_front(sim_line_t *line)
     return NULL;
 }
 
-static void describe_packet(sim_line_t *line, sim_frame_t *frame)
+static void describe_packet(sim_frame_t *frame)
 {
     frame->packet.bytes = frame->bytes + frame->packet_at;
     frame->packet.length = (uint16_t)(frame->length - frame->packet_at);
-    frame->packet.position = line->sent + frame->packet_at;
 }
 
 static void describe_run(const sim_frame_t *frame, size_t length, sim_run_t *run)
@@ -103,11 +102,10 @@ bool sim_line_take(sim_line_t *line, uint64_t now_us, size_t max, sim_run_t *run
         return false;
     }
     if (frame->taken == 0u && !frame->cut) {
-        describe_packet(line, frame);
+        describe_packet(frame);
     }
     describe_run(frame, length, run);
     frame->taken = (uint16_t)(frame->taken + length);
-    line->sent += length;
     return true;
 }
 
@@ -122,7 +120,7 @@ void sim_line_cut(sim_line_t *line, uint64_t now_us)
         return;
     }
     if (frame->taken == 0u) {
-        describe_packet(line, frame);
+        describe_packet(frame);
     }
     line->count = 1;
     frame->cut = bytes_left(frame, now_us) < frame->length;

@@ -26,7 +26,6 @@ typedef struct {
     uint32_t revolution; /* start packets so far, this one included */
     bool starts_revolution;
     bool is_of_partial; /* its revolution did not begin at the start packet's usual angle */
-    uint64_t position;  /* of its first byte in all bytes sent */
 } sim_packet_t;
 
 /* Bytes of one frame, back to back on the wire. */
@@ -57,7 +56,6 @@ typedef struct {
     uint32_t first;
     uint32_t count;
     uint64_t free_us; /* when all queued bytes have been sent */
-    uint64_t sent;    /* bytes taken so far */
     uint32_t lost;    /* frames that found the queue full */
 } sim_line_t;
 
