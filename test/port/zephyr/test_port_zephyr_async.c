@@ -26,12 +26,12 @@ const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
 void test_line_errors_are_counted_by_kind_and_reception_starts_again(void)
 {
-    static const int errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
+    static const uint32_t errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
     tmini_zephyr_counters_t counters;
     start();
     assert_true_scans(1, 1);
     for (unsigned i = 0; i < 3; i++) {
-        board.damage = errors[i];
+        machine_receive(errors[i], (const uint8_t *)"", 1);
         assert_gap();
     }
     tmini_zephyr_counters(port_program.context, &counters);
@@ -49,8 +49,7 @@ void test_a_line_held_low_causes_no_interrupt_storm(void)
     machine_power(false);
     const uint32_t before = port_counted().breaks;
     for (unsigned i = 0; i < 1000; i++) {
-        board.damage = UART_BREAK;
-        machine_receive(0, (const uint8_t *)"", 1);
+        machine_receive(UART_BREAK, (const uint8_t *)"", 1);
     }
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(before + 2, port_counted().breaks);
 }

@@ -87,8 +87,7 @@ void test_an_overrun_without_a_byte_to_read_is_a_gap(void)
     start_port();
     machine_receive(0, manual_packet, 10);
     TEST_ASSERT_EQUAL_size_t(1024 - 10, tmini_feed_room(&lidar));
-    board.damage = UART_ERROR_OVERRUN;
-    machine_receive(0, &manual_packet[10], 1);
+    machine_receive(UART_ERROR_OVERRUN, &manual_packet[10], 1);
     TEST_ASSERT_EQUAL_UINT32(1, port_counted().overruns);
     TEST_ASSERT_EQUAL_UINT32(10, port_counted().bytes);
     TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));

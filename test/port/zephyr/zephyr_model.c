@@ -37,8 +37,7 @@ static void serve(void)
 
 static void arrive(uint32_t errors, uint8_t byte)
 {
-    board.errors |= board.damage | (int)errors;
-    board.damage = 0;
+    board.errors |= (int)errors;
     if (!machine_put(byte)) {
         board.errors |= UART_ERROR_OVERRUN;
     }

@@ -31,7 +31,6 @@ typedef struct {
     bool lidar_ready;
     uint32_t baud_rate;
     int errors;               /* Since they were last taken. */
-    int damage;               /* The next byte arrives with these errors. */
     bool lose_while_reading;  /* During the next reading of the full FIFO, a byte is lost. */
     bool clearing_reads_data; /* As on USARTs with SR and DR: clearing errors loses a byte. */
     bool receiving;           /* By the interrupt-driven API. */
