@@ -25,10 +25,6 @@ static bed_held_t held;
 static sim_config_t lidar;
 static watch_t watch;
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static void expect(bool is_true, const char *format, ...)
 {
     char complaint[200];
@@ -778,12 +774,12 @@ void test_a_silence_of_any_length_mixes_no_turns(void)
     for (uint32_t ct = 0; ct <= 1; ct++) {
         prepare(0);
         lidar.ct_information = ct != 0;
-        play_steps("begin, start, within 5000");
+        row_tell("begin start within:5000", tell);
         for (uint32_t ms = 20; ms < 860; ms++) {
             sim_befall(&bed.sim, SIM_SILENT, ms, bed.now_us);
             bed_run_ms(&bed, ms + 250);
         }
-        play_steps("within 2000");
+        row_tell("within:2000", tell);
         expect_good_behaviour(ct);
     }
 }
@@ -795,14 +791,14 @@ void test_pauses_of_the_program_of_any_length_mix_no_turns(void)
         prepare(0);
         bed.config.rx_size = (size_t)256 << (kind + 1) / 2;
         bed.config.rx_dma = kind % 2 != 0;
-        play_steps("may lose 1, begin, start, within 5000");
+        row_tell("may-lose:1 begin start within:5000", tell);
         for (uint32_t ms = 5; ms < 700; ms += 7) {
             bed_pause_ms(&bed, ms);
             bed_run_ms(&bed, ms % 3);
             bed_pause_ms(&bed, ms * 5 % 300);
             bed_run_ms(&bed, 400);
         }
-        play_steps("within 5000");
+        row_tell("within:5000", tell);
         expect_good_behaviour(kind);
     }
 }
