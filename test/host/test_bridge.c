@@ -21,8 +21,6 @@ void setUp(void)
     sent_size = 0;
 }
 
-void tearDown(void) {}
-
 /* The network takes at most this many bytes. */
 static void take(int listener, size_t most)
 {

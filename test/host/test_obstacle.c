@@ -23,8 +23,6 @@ void setUp(void)
     now_ms = 1000;
 }
 
-void tearDown(void) {}
-
 /* Three scans, 100 ms apart, with something ten degrees wide at this distance and angle, and 2 m
  * all around. */
 static void see(uint16_t distance_mm, unsigned degrees)

@@ -34,8 +34,6 @@ void setUp(void)
     tape_begin(&tape, NULL, 0);
 }
 
-void tearDown(void) {}
-
 /* ---- What is recorded ---- */
 
 static void put_bytes(const uint8_t *bytes, size_t count)

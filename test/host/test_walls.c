@@ -32,8 +32,6 @@ void setUp(void)
     calibrate_begin(&sample);
 }
 
-void tearDown(void) {}
-
 static double distance_at(double degrees)
 {
     double nearest = fabs(remainder(degrees, 360)) < gap_deg ? 1700 : 1e9;

@@ -152,8 +152,6 @@ void setUp(void)
     power_up();
 }
 
-void tearDown(void) {}
-
 /* ---- What spoils an event on the wire ---- */
 
 /* The first event of the kind; how many there have been. */

@@ -50,8 +50,6 @@ void setUp(void)
     memset(out, 0xEE, sizeof out);
 }
 
-void tearDown(void) {}
-
 void test_the_manuals_packet_is_encoded_byte_for_byte(void)
 {
     const encode_packet_t packet = {0x20, 19, 21706, 49, manual_samples};

@@ -70,8 +70,6 @@ void setUp(void)
     irq.lines[HIGH] = (irq_line_t){.is_up = is_high_up, .handler = handle_high, .priority = 4};
 }
 
-void tearDown(void) {}
-
 /* Words of the rows:
  *
  *     low:3 high      the line is up until its handler has run three times, or once

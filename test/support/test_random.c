@@ -17,8 +17,6 @@ void setUp(void)
     random_seed(&dice, 1);
 }
 
-void tearDown(void) {}
-
 void test_the_same_seed_gives_the_same_numbers(void)
 {
     random_t other;

@@ -28,8 +28,6 @@ void setUp(void)
     memset(bytes, 0, sizeof bytes);
 }
 
-void tearDown(void) {}
-
 static void read_packet(unsigned count, uint16_t first, unsigned difference)
 {
     const encode_packet_t packet = {

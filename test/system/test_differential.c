@@ -26,8 +26,6 @@ static receiver_t receiver;
 static random_t random;
 static uint32_t seed;
 
-void setUp(void) {}
-
 void tearDown(void)
 {
     if (Unity.CurrentTestFailed) {

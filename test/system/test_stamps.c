@@ -34,10 +34,6 @@ static errors_t starts;
 static errors_t inside;
 static unsigned parts; /* Scans without a start packet. */
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* ---- The lidar ---- */
 
 static void see_packet(void *context, const sim_packet_t *packet)

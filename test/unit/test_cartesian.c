@@ -8,10 +8,6 @@
 #include "tmini/tmini_cartesian.h"
 #include "unity.h"
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static void is_at(int16_t x_mm, int16_t y_mm, uint16_t degrees, uint16_t distance_mm)
 {
     const tmini_point_t point = {(uint16_t)(degrees * 64u), distance_mm, 0, 0};

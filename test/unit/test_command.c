@@ -5,8 +5,6 @@
 
 #include "tale.h"
 
-void setUp(void) {}
-
 void tearDown(void)
 {
     tale_end();

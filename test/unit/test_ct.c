@@ -29,8 +29,6 @@ void setUp(void)
     is_whole = false;
 }
 
-void tearDown(void) {}
-
 /* Adds a packet with `gap` skipped bytes before it; `skipped` is the last of them. What is whole is
  * decided here as the protocol says (section 7), for start packets and others. */
 static tmini_ct_verdict_t verdict_on(uint8_t ct, uint16_t gap, uint8_t skipped)

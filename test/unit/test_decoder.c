@@ -33,8 +33,6 @@ void setUp(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_builder_init(&other.builder, points[1], 40, 0));
 }
 
-void tearDown(void) {}
-
 /* Third 0 is a start packet at 10 Hz, the others are a third of a turn. */
 static void receive(unsigned third)
 {

@@ -10,8 +10,6 @@
 
 static uint8_t memory[8192];
 
-void setUp(void) {}
-
 void tearDown(void)
 {
     tale_end();

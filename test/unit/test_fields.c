@@ -37,8 +37,6 @@ void setUp(void)
     set_up(box, 2);
 }
 
-void tearDown(void) {}
-
 static void is(tmini_field_state_t wanted)
 {
     TEST_ASSERT_EQUAL_INT(wanted, tmini_field_state(&field[0], now_ms));

@@ -27,8 +27,6 @@ void setUp(void)
     isolated = (tmini_isolated_t){0};
 }
 
-void tearDown(void) {}
-
 /* Words of the rows. At 1 m points a degree apart are 17.4 mm apart.
  *
  *     1000 1000!      points with this distance, a degree apart; with "!", it loses its range

@@ -49,8 +49,6 @@ void setUp(void)
     open_at(1000);
 }
 
-void tearDown(void) {}
-
 static void look_after(uint32_t passed_ms, size_t count)
 {
     now_ms += passed_ms;

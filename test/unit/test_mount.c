@@ -21,8 +21,6 @@ void setUp(void)
     mount = (tmini_mount_t){.masked = arcs};
 }
 
-void tearDown(void) {}
-
 /* Words of the rows. Angles are sixty-fourths of a degree, with "d" degrees: 10d-1.
  *
  *     front:90d offset:69 min:100 max:5000 upside-down    the mount

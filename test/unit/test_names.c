@@ -12,10 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static const char *faults_text(uint8_t faults)
 {
     static char text[TMINI_FAULTS_TEXT_SIZE];

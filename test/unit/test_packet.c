@@ -27,8 +27,6 @@ void setUp(void)
     receiver_open(&receiver, memory, 1024, 255);
 }
 
-void tearDown(void) {}
-
 /* Reads up to `room` points of the packet; there are `count` of them. */
 static void read_points(size_t room, size_t count)
 {

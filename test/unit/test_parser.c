@@ -33,8 +33,6 @@ void setUp(void)
     receiver_open(&receiver, memory, 256, 0);
 }
 
-void tearDown(void) {}
-
 static void open_receiver(size_t size, bool dma, uint8_t max_samples)
 {
     (dma ? receiver_open_dma : receiver_open)(&receiver, memory, size, max_samples);

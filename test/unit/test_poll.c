@@ -6,8 +6,6 @@
 
 #include "tale.h"
 
-void setUp(void) {}
-
 void tearDown(void)
 {
     tale_end();

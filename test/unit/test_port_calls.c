@@ -28,8 +28,6 @@ void setUp(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
 }
 
-void tearDown(void) {}
-
 static void expect_clock(uint32_t now_ms)
 {
     port_now_ms_ExpectAndReturn(&context, now_ms);

@@ -17,10 +17,6 @@
 static tmini_info_t info;
 static tmini_health_t health;
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* Words of the rows:
  *
  *     90=0:04:20      the command 90 has a reply of this mode, type and length; 65=: it has none

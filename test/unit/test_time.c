@@ -25,8 +25,6 @@ void setUp(void)
                           .complete = true};
 }
 
-void tearDown(void) {}
-
 static void expect_time(size_t index, uint32_t time_us)
 {
     TEST_ASSERT_EQUAL_UINT32(time_us, tmini_point_time_us(&scan, index));

@@ -6,10 +6,6 @@
 #include "tmini/tmini_units.h"
 #include "unity.h"
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static void expect_near(float expected, float value)
 {
     const float error = value - expected;
