@@ -28,9 +28,11 @@ static uint8_t stream[STREAM_MAX];
 static size_t size;
 static size_t taken;  /* Bytes of the stream that a row has named. */
 static size_t marked; /* Bytes that had come. */
-static reference_item_t packets[PACKETS_MAX];
-static size_t packet_count;
-static reference_counts_t counts;
+
+/* A stream to compare with, and its time. */
+static uint8_t kept[STREAM_MAX];
+static size_t kept_size;
+static uint64_t kept_us;
 
 /* What the wire has reported. */
 static struct {
@@ -44,7 +46,15 @@ static struct {
     unsigned ended[SIM_LINK_KINDS];
 } heard;
 
-/* ---- Helpers ---- */
+/* Spoils the first event of the kind; how many there have been. */
+static struct {
+    sim_event_t event;
+    sim_trouble_t trouble;
+    uint32_t ms;
+    unsigned count;
+} spoil;
+
+/* ---- The lidar and its wire ---- */
 
 static void hear_packet(void *context, const sim_link_packet_t *packet)
 {
@@ -62,25 +72,41 @@ static void hear_fault(void *context, sim_link_kind_t kind, bool begins, uint64_
     heard.ended[kind] += begins ? 0u : 1u;
 }
 
+static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
+{
+    const bool is_first = event == spoil.event && spoil.count++ == 0;
+    (void)context;
+    (void)now_us;
+    *ms = spoil.ms;
+    return is_first ? spoil.trouble : SIM_SOUND;
+}
+
 static void power_up(void)
 {
+    static const sim_observer_t spoiler = {.on_event = spoil_event};
     static const sim_link_observer_t observer = {.on_packet = hear_packet, .on_fault = hear_fault};
     sim_init(&sim, &config);
+    sim_observe(&sim, &spoiler);
     sim_link_init(&wire, &sim, &wire_config);
     sim_link_observe(&wire, &observer);
     memset(&heard, 0, sizeof heard);
+    memset(&spoil, 0, sizeof spoil);
     fate_count = 0;
     now = 0;
     size = 0;
     taken = 0;
 }
 
-/* The time is this; nothing was taken since the latest bytes. */
+/* The time is this; nothing was taken since the latest bytes. They never come faster than 230400
+ * baud, ten bits for each. */
 static void run_until(uint64_t us)
 {
-    now = us;
-    size += sim_link_read(&wire, now, stream + size, STREAM_MAX - size);
+    const size_t more = sim_link_read(&wire, us, stream + size, STREAM_MAX - size);
+    const bool is_slow = more <= (us - now) * 72u / 3125u + 1u;
+    TEST_ASSERT_TRUE(is_slow || heard.begun[SIM_LINK_INSERT] > 0);
     TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
+    now = us;
+    size += more;
 }
 
 static void run_ms(uint32_t milliseconds)
@@ -96,9 +122,105 @@ static void send(uint8_t code)
     sim_link_write(&wire, command, 2, now);
 }
 
-static void forget_stream(void)
+static void forget(void)
 {
+    taken = 0;
     size = 0;
+    memset(&heard, 0, sizeof heard);
+}
+
+/* Scans for some seconds, after the spin-up. */
+static void scan_seconds(uint32_t seconds)
+{
+    send(0x60);
+    run_ms(3000);
+    forget();
+    run_ms(seconds * 1000u);
+}
+
+void setUp(void)
+{
+    config = sim_default_config();
+    wire_config = sim_link_default_config();
+    power_up();
+}
+
+/* ---- What the stream holds, according to an independent decoder ---- */
+
+static reference_item_t packets[PACKETS_MAX];
+static size_t packet_count;
+static reference_counts_t counts;
+
+static struct {
+    unsigned ranges;
+    unsigned flags[4];
+    unsigned lone;  /* Packets of one sample, with LSA slightly below FSA, */
+    unsigned askew; /* and with another LSA. */
+    unsigned gaps;  /* Bytes between packets. */
+    unsigned aa;    /* LastCRC of this value, */
+    unsigned wrong; /* and of a wrong one. */
+    unsigned cts;   /* CT bytes of point packets that are not 0. */
+    unsigned off;   /* The farthest start packet from its usual angle, but for the first packet; */
+    unsigned slow;  /* the lowest frequency in their CT bytes, and the highest. */
+    unsigned fast;
+    unsigned before; /* Samples before the first of them. */
+} is;
+
+static unsigned larger(unsigned a, unsigned b)
+{
+    return a > b ? a : b;
+}
+
+static unsigned apart_q6(unsigned a, unsigned b)
+{
+    const unsigned turned = (a + ENCODE_FULL_TURN_Q6 - b) % ENCODE_FULL_TURN_Q6;
+    return turned < ENCODE_FULL_TURN_Q6 / 2u ? turned : ENCODE_FULL_TURN_Q6 - turned;
+}
+
+/* A start packet that is not the first packet. */
+static void measure_start(const reference_item_t *packet, uint8_t crc, bool is_whole)
+{
+    const uint8_t last_crc = packet->bytes[-1];
+    is.aa += last_crc == 0xAA ? 1u : 0u;
+    is.wrong += is_whole && crc != last_crc ? 1u : 0u;
+    is.off = larger(is.off, apart_q6(packet->fsa >> 1, config.start_angle_q6));
+    is.slow = is.slow < packet->ct >> 1 ? is.slow : packet->ct >> 1;
+    is.fast = larger(is.fast, packet->ct >> 1);
+}
+
+static void measure_point_packet(const reference_item_t *packet)
+{
+    is.cts += packet->ct != 0 ? 1u : 0u;
+    if (packet->lsn == 1u && packet->fsa > 20u) {
+        is.lone += packet->lsa == packet->fsa - 14u ? 1u : 0u;
+        is.askew += packet->lsa == packet->fsa - 14u ? 0u : 1u;
+    }
+}
+
+static void measure(void)
+{
+    uint8_t crc = 0;
+    unsigned turns = 0;
+    memset(&is, 0, sizeof is);
+    is.slow = 255;
+    for (size_t i = 0; i < packet_count; i++) {
+        const reference_item_t *const packet = &packets[i];
+        if (!packet->starts_revolution) {
+            measure_point_packet(packet);
+        } else if (i > 0) {
+            measure_start(packet, crc, turns > 0);
+        }
+        is.gaps +=
+            i > 0 ? (unsigned)(packet->offset - packets[i - 1].offset - packets[i - 1].length) : 0;
+        turns += packet->starts_revolution ? 1u : 0u;
+        is.before += turns == 0 ? packet->lsn : 0u;
+        crc = encode_crc8(packet->starts_revolution ? 0 : crc, packet->ct);
+        for (unsigned s = 0; s < packet->lsn; s++) {
+            const reference_point_t point = reference_point(packet->bytes, s);
+            is.ranges += point.distance_mm != 0u ? 1u : 0u;
+            is.flags[point.flag]++;
+        }
+    }
 }
 
 static void collect(void *context, const reference_item_t *item)
@@ -115,16 +237,7 @@ static void decode(void)
     const reference_options_t options = {80, &start_reply};
     packet_count = 0;
     counts = reference_decode(stream, size, &options, collect, NULL);
-}
-
-/* Scans for some seconds, after the spin-up. */
-static void scan_seconds(uint32_t seconds)
-{
-    send(0x60);
-    run_ms(3000);
-    forget_stream();
-    run_ms(seconds * 1000u);
-    decode();
+    measure();
 }
 
 static size_t next_start(size_t from)
@@ -134,61 +247,6 @@ static size_t next_start(size_t from)
     }
     TEST_ASSERT_TRUE_MESSAGE(from < packet_count, "no more start packets");
     return from;
-}
-
-static unsigned points_between(size_t from, size_t to)
-{
-    unsigned points = 0;
-    for (; from < to; from++) {
-        points += packets[from].lsn;
-    }
-    return points;
-}
-
-void setUp(void)
-{
-    config = sim_default_config();
-    wire_config = sim_link_default_config();
-    power_up();
-}
-
-/* ---- What spoils an event on the wire ---- */
-
-/* The first event of the kind; how many there have been. */
-static struct {
-    sim_event_t event;
-    sim_trouble_t trouble;
-    uint32_t ms;
-    unsigned count;
-} spoil;
-
-static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_us, uint32_t *ms)
-{
-    const bool is_first = event == spoil.event && spoil.count++ == 0;
-    (void)context;
-    (void)now_us;
-    *ms = spoil.ms;
-    return is_first ? spoil.trouble : SIM_SOUND;
-}
-
-static void unkind(sim_event_t event, sim_trouble_t trouble, uint32_t ms)
-{
-    const sim_observer_t observer = {.on_event = spoil_event};
-    spoil.event = event;
-    spoil.trouble = trouble;
-    spoil.ms = ms;
-    spoil.count = 0;
-    sim_observe(&sim, &observer);
-}
-
-static unsigned number_of(const char *name, const char *const *names, unsigned count)
-{
-    unsigned number = 0;
-    while (number < count && strncmp(name, names[number], strlen(names[number])) != 0) {
-        number++;
-    }
-    TEST_ASSERT_TRUE_MESSAGE(number < count, name);
-    return number;
 }
 
 /* ---- What the wire reports ---- */
@@ -230,22 +288,11 @@ static void expect_the_truth_about_every_packet(void)
     }
 }
 
-/* ---- Rows ---- */
+/* ---- Facts ---- */
 
 static size_t absolute(size_t a, size_t b)
 {
     return a > b ? a - b : b - a;
-}
-
-static unsigned ranges(void)
-{
-    unsigned sum = 0;
-    for (size_t i = 0; i < packet_count; i++) {
-        for (unsigned s = 0; s < packets[i].lsn; s++) {
-            sum += reference_point(packets[i].bytes, s).distance_mm != 0u ? 1u : 0u;
-        }
-    }
-    return sum;
 }
 
 static unsigned kind_named(const char *word)
@@ -276,6 +323,9 @@ static bool is_fact(const char *word)
         {"bytes", (uint32_t)size},
         {"hz", sim_frequency_chz(&sim)},
         {"sleeps", sim_next_us(&sim) == SIM_NEVER},
+        {"faults", sim_health(&sim)},
+        {"next", (uint32_t)sim_link_next_us(&wire)},
+        {"lost_frames", sim_lost_frames(&sim)},
         {"commands", sim.counts.commands},
         {"unknown", sim.counts.unknown_commands},
         {"forbidden", sim.counts.commands_while_scanning},
@@ -283,12 +333,28 @@ static bool is_fact(const char *word)
         {"packets", (uint32_t)counts.packets},
         {"starts", (uint32_t)counts.start_packets},
         {"replies", (uint32_t)counts.replies},
+        {"points", (uint32_t)counts.points},
         {"uncounted", (uint32_t)(absolute(counts.packets, sim.counts.packets) +
                                  absolute(counts.start_packets, sim.counts.start_packets) +
                                  absolute(counts.points, sim.counts.samples))},
         {"checksum_errors", (uint32_t)counts.checksum_errors},
         {"stray", (uint32_t)(size - counts.bytes_in_packets - counts.start_packets)},
-        {"ranges", ranges()},
+        {"ranges", is.ranges},
+        {"flag1", is.flags[1]},
+        {"flag2", is.flags[2]},
+        {"flag3", is.flags[3]},
+        {"lone_ones", is.lone},
+        {"askew", is.askew},
+        {"gaps", is.gaps},
+        {"aa", is.aa},
+        {"wrong_crc", is.wrong},
+        {"point_cts", is.cts},
+        {"start_off", is.off},
+        {"slowest", is.slow},
+        {"fastest", is.fast},
+        {"before", is.before},
+        {"first_off", packet_count > 0 ? apart_q6(packets[0].fsa >> 1, config.first_angle_q6) : 0},
+        {"first_ct", packet_count > 0 ? packets[0].ct : 0},
         {"turned",
          packet_count > 0 ? (uint32_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
         {"intact", (uint32_t)intact_packets()},
@@ -311,15 +377,21 @@ static bool is_fact(const char *word)
 static bool is_setting(const char *word)
 {
     const row_member_t members[] = {
+        {"ct_information", MEMBER(config.ct_information)},
         {"frequency", MEMBER(config.frequency_chz)},
         {"latency", MEMBER(config.reply_latency_ms)},
         {"tail", MEMBER(config.stop_tail_ms)},
         {"fatal", MEMBER(config.fatal_health)},
         {"never_answers", MEMBER(config.never_answers)},
         {"blocked_sends_starts", MEMBER(config.blocked_sends_starts)},
+        {"beginning", MEMBER(config.beginning)},
         {"first_angle", MEMBER(config.first_angle_q6)},
+        {"start_angle", MEMBER(config.start_angle_q6)},
         {"spin_percent", MEMBER(config.spin_up_percent)},
         {"wobble", MEMBER(config.wobble_permille)},
+        {"lone", MEMBER(config.lone_packet_permille)},
+        {"flagged", MEMBER(config.flagged_permille)},
+        {"marked", MEMBER(config.marked)},
         {"sample_size", MEMBER(config.sample_size)},
         {"blind_every", MEMBER(config.blind_every)},
     };
@@ -347,8 +419,7 @@ static void expect_bytes(const char *hex)
 static void expect_end(void)
 {
     TEST_ASSERT_EQUAL_size_t(taken, size);
-    taken = 0;
-    forget_stream();
+    forget();
 }
 
 static void expect_frequency(unsigned chz)
@@ -375,9 +446,55 @@ static void expect_range_at(unsigned angle_q6, unsigned distance_mm)
     TEST_FAIL_MESSAGE("no point there");
 }
 
-static void expect_mode(const char *name)
+static void expect_no_mark_twice(void)
 {
-    TEST_ASSERT_EQUAL_STRING(name, sim_mode_name(sim_mode(&sim)));
+    static bool is_known[1u << 24];
+    decode();
+    for (size_t at = 0; at < packet_count; at++) {
+        for (unsigned i = 0; i < packets[at].lsn; i++) {
+            const reference_point_t point = reference_point(packets[at].bytes, i);
+            bool *const mark = &is_known[(uint32_t)point.intensity << 16 |
+                                         (uint32_t)point.flag << 14 | point.distance_mm];
+            TEST_ASSERT_FALSE(*mark);
+            *mark = true;
+        }
+    }
+}
+
+static void keep(void)
+{
+    memcpy(kept, stream, size);
+    kept_size = size;
+    kept_us = now;
+    power_up();
+}
+
+static void expect_same(void)
+{
+    TEST_ASSERT_EQUAL_size_t(kept_size, size);
+    TEST_ASSERT_EQUAL_MEMORY(kept, stream, size);
+}
+
+/* Until then at once, without the wire, in portions of this size. */
+static void transmit_by(uint32_t portion)
+{
+    size_t more;
+    do {
+        more = sim_transmit(&sim, kept_us, stream + size, portion);
+        size += more;
+    } while (more > 0);
+}
+
+/* Nothing comes before the next event. */
+static void run_to_next(void)
+{
+    const uint64_t next = sim_link_next_us(&wire);
+    const size_t before = size;
+    if (next > now + 1u) {
+        run_until(next - 1u);
+    }
+    TEST_ASSERT_EQUAL_size_t(before, size);
+    run_until(next > now ? next : now + 1u);
 }
 
 static void run_into_a_packet(void)
@@ -387,21 +504,6 @@ static void run_into_a_packet(void)
     } while (!wire.packet_open);
 }
 
-static void plan_trouble(const char *text)
-{
-    static const char *const events[] = {"command", "reply", "beginning", "start"};
-    uint32_t ms;
-    const sim_trouble_t trouble = sim_trouble_named(row_text(text), &ms);
-    unkind((sim_event_t)number_of(text, events, 4), trouble, ms);
-}
-
-static void befall(const char *name)
-{
-    uint32_t ms;
-    const sim_trouble_t trouble = sim_trouble_named(name, &ms);
-    sim_befall(&sim, trouble, ms, now);
-}
-
 static void run_until_spoilt(void)
 {
     do {
@@ -409,10 +511,37 @@ static void run_until_spoilt(void)
     } while (spoil.count == 0);
 }
 
-static void send_raw(const char *hex)
+/* Flips the first byte of a frame: LastCRC before a start packet, otherwise the header. */
+static void hit_a_frame(void)
 {
-    uint8_t bytes[ROW_WORD_MAX];
-    sim_link_write(&wire, bytes, row_bytes(hex, bytes), now);
+    while (wire.packet_open) {
+        run_until(now + 20u);
+    }
+    const size_t before = fate_count;
+    sim_link_force(&wire, SIM_LINK_FLIP, 0, now);
+    while (fate_count == before) {
+        run_until(now + 20u);
+    }
+    TEST_ASSERT_EQUAL(fates[before].packet.sent.starts_revolution, fates[before].packet.intact);
+}
+
+static void plan_trouble(const char *text)
+{
+    static const char *const events[] = {"command", "reply", "beginning", "start"};
+    unsigned event = 0;
+    while (!row_is(text, events[event])) {
+        TEST_ASSERT_TRUE_MESSAGE(++event < sizeof events / sizeof events[0], text);
+    }
+    spoil.event = (sim_event_t)event;
+    spoil.trouble = sim_trouble_named(row_text(text), &spoil.ms);
+    spoil.count = 0;
+}
+
+static void befall(const char *name)
+{
+    uint32_t ms;
+    const sim_trouble_t trouble = sim_trouble_named(name, &ms);
+    sim_befall(&sim, trouble, ms, now);
 }
 
 /* "stall:100" */
@@ -423,13 +552,19 @@ static void force(const char *text)
     sim_link_force(&wire, (sim_link_kind_t)kind, row_number(text), now);
 }
 
-/* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "=A55A": the next bytes, which
- * come within 10 ms; "end": no more come; "got:600": the reply that a frequency is set; "forget":
- * what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40":
- * the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans": trouble; "fails":
- * power is lost so many microseconds later, and the wire does not know; "force:stall:100": a fault
- * of the wire; "calm"; "truth": what it has reported about each packet is true; settings and facts
- * above. */
+static void send_raw(const char *hex)
+{
+    uint8_t bytes[ROW_WORD_MAX];
+    sim_link_write(&wire, bytes, row_bytes(hex, bytes), now);
+}
+
+/* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "~100": 100 us; "=A55A": the
+ * next bytes, which come within 10 ms; "end": no more come; "got:600": the reply that a frequency
+ * is set; "forget": what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40": the CT byte of a packet in a turn;
+ * "spoil:command:late700", "befalls:no-scans": trouble; "fails": power is lost so many microseconds
+ * later, and the wire does not know; "force:stall:100": a fault of the wire; "calm"; "truth": what
+ * it has reported about each packet is true; "keep": a new lidar, whose stream must become the
+ * "same"; "by:7": it is taken at once, in portions of 7; settings and facts above. */
 static void tell(char *word)
 {
     const uint32_t number = row_number(word);
@@ -441,10 +576,12 @@ static void tell(char *word)
         send_raw(&word[1]);
     } else if (word[0] == '+') {
         run_ms((uint32_t)atoi(&word[1]));
+    } else if (word[0] == '~') {
+        run_until(now + (uint32_t)atoi(&word[1]));
     } else if (word[0] == '=') {
         expect_bytes(&word[1]);
     } else if (word[0] == '@') {
-        expect_mode(&word[1]);
+        TEST_ASSERT_EQUAL_STRING(&word[1], sim_mode_name(sim_mode(&sim)));
     } else if (sscanf(word, "at:%u:%u", &a, &b) == 2) {
         expect_range_at(a, b);
     } else if (sscanf(word, "ct:%u:%x", &a, &b) == 2) {
@@ -454,18 +591,32 @@ static void tell(char *word)
         plan_trouble(text);
     } else if (row_is(word, "befalls")) {
         befall(text);
+    } else if (row_is(word, "force")) {
+        force(text);
     } else if (row_is(word, "end")) {
         expect_end();
     } else if (row_is(word, "forget")) {
-        taken = 0;
-        forget_stream();
-        memset(&heard, 0, sizeof heard);
-    } else if (row_is(word, "mark")) {
-        marked = size;
+        forget();
+    } else if (row_is(word, "marks")) {
+        expect_no_mark_twice();
+    } else if (row_is(word, "truth")) {
+        expect_the_truth_about_every_packet();
+    } else if (row_is(word, "keep")) {
+        keep();
+    } else if (row_is(word, "same")) {
+        expect_same();
+    } else if (row_is(word, "step")) {
+        run_to_next();
     } else if (row_is(word, "inside")) {
         run_into_a_packet();
     } else if (row_is(word, "spoilt_once")) {
         run_until_spoilt();
+    } else if (row_is(word, "hit")) {
+        hit_a_frame();
+    } else if (row_is(word, "mark")) {
+        marked = size;
+    } else if (row_is(word, "by")) {
+        transmit_by(number);
     } else if (row_is(word, "lose")) {
         sim_lose_next_reply(&sim);
     } else if (row_is(word, "clear")) {
@@ -476,6 +627,8 @@ static void tell(char *word)
         run_until(number);
     } else if (row_is(word, "scan")) {
         scan_seconds(number);
+    } else if (row_is(word, "untaken")) {
+        sim_receive(&sim, (const uint8_t[]){0xA5, 0x65}, 2, now + number * 1000u);
     } else if (row_is(word, "delay")) {
         sim_delay_next_reply(&sim, number);
     } else if (row_is(word, "sick")) {
@@ -490,12 +643,8 @@ static void tell(char *word)
         sim_power(&sim, false, now + number);
     } else if (row_is(word, "obstacle")) {
         sim_place_obstacle(&sim, 0, 640, (uint16_t)number);
-    } else if (row_is(word, "force")) {
-        force(text);
     } else if (row_is(word, "calm")) {
         sim_link_calm(&wire, now);
-    } else if (row_is(word, "truth")) {
-        expect_the_truth_about_every_packet();
     } else {
         TEST_ASSERT_TRUE_MESSAGE(is_setting(word) || is_fact(word), word);
     }
@@ -527,7 +676,6 @@ static const row_t rows[] IN_FLASH = {
     ROW(one_reply_can_be_lost, "lose >0D +100 bytes:0 >0D got:600"),
     ROW(a_lidar_that_never_answers_obeys,
         "never_answers:1 >0B +100 bytes:0 hz:700 scan:1 packets>90"),
-    ROW(all_that_is_sent_is_counted, ">60 +5000 packets>400 uncounted:0"),
     ROW(the_ct_bytes_carry_what_section_7_says,
         "scan:5 ct:1:40 ct:3:00 ct:4:22 ct:5:04 ct:9:30 ct:10:30 ct:11:88 ct:12:C0 ct:13:72"),
     ROW(a_covered_window_gives_no_ranges_and_the_data_fault,
@@ -610,230 +758,32 @@ static const row_t rows[] IN_FLASH = {
         "spoil:start:silent800 >60 spoilt_once +30 forget +760 bytes:0 +1000 packets>90"),
     ROW(a_late_start_packet_delays_the_stream,
         "spoil:start:late800 >60 spoilt_once +30 forget +760 bytes:0 +1000 packets>90"),
-};
+    ROW(lone_point_packets_end_slightly_before_they_begin,
+        "lone:200 scan:10 lone_ones>100 askew:0"),
+    ROW(start_packets_are_at_the_start_angle, "start_angle:7424 scan:5 starts>25 start_off<57"),
+    ROW(bytes_never_come_faster_than_the_line, ">60 30000( ~100 ) bytes>20000"),
+    ROW(one_late_call_gives_the_same_bytes_as_many_early_ones,
+        ">60 +5000 bytes>40000 keep >60 by:4000000 same"),
+    ROW(a_small_buffer_loses_nothing, ">60 +5000 keep >60 by:7 same"),
+    ROW(the_first_packets_may_pass_the_start_packets_place_without_one,
+        "beginning:1 first_angle:21101 >60 +1500 first_off<4 before>667 start_off<65"),
+    ROW(the_first_packet_may_be_a_start_packet_anywhere_at_2_4_hz,
+        "beginning:2 first_angle:5485 >60 +1500 first_off<4 before:0 first_ct:0x31 start_off<65"),
+    ROW(last_crc_guards_the_ct_bytes_of_every_revolution, "scan:20 starts>100 wrong_crc:0"),
+    ROW(last_crc_is_sometimes_aa, "frequency:1200 scan:120 aa>0 checksum_errors:0"),
+    ROW(a_unit_without_ct_information_sends_neither_ct_nor_last_crc,
+        "ct_information:0 scan:10 gaps:0 point_cts:0 slowest>58 fastest<62"),
+    ROW(flags_2_and_3_occur_as_often_as_configured,
+        "flagged:100 scan:10 flag1:0 flag2>1699 flag2<2301 flag3>1699 flag3<2301"),
+    ROW(a_byte_is_there_when_all_of_it_has_left,
+        "latency:1 >92 next:1000 us:1000 next:1044 us:1044 next:1087 us:1087 next:1131"),
+    ROW(all_that_is_sent_is_counted, ">60 +5000 packets>400 uncounted:0"),
+    ROW(frames_that_are_not_taken_in_time_are_lost_and_counted,
+        "scan:1 untaken:500 lost_frames>28 lost_frames<46"),
+    ROW(no_two_marks_are_equal_and_none_is_a_data_fault,
+        "marked:1 scan:20 marks points>79000 faults:0"),
 
-void test_the_simulated_lidar(void)
-{
-    tell_rows(rows, tell);
-}
-
-/* ---- The stream ---- */
-
-void test_lone_point_packets_end_slightly_before_they_begin(void)
-{
-    unsigned lone = 0;
-    config.lone_packet_permille = 200;
-    power_up();
-    scan_seconds(10);
-    for (size_t i = 0; i < packet_count; i++) {
-        if (packets[i].lsn == 1u && !packets[i].starts_revolution && packets[i].fsa > 20u) {
-            TEST_ASSERT_EQUAL_UINT16(packets[i].fsa - 14u, packets[i].lsa);
-            lone++;
-        }
-    }
-    TEST_ASSERT_TRUE(lone > 100);
-}
-
-void test_start_packets_are_at_the_start_angle(void)
-{
-    config.start_angle_q6 = 7424; /* 116 degrees */
-    power_up();
-    scan_seconds(5);
-    for (size_t i = next_start(0); i < packet_count; i++) {
-        if (packets[i].starts_revolution) {
-            TEST_ASSERT_UINT_WITHIN(40, 7440, packets[i].fsa >> 1);
-        }
-    }
-}
-
-void test_bytes_never_come_faster_than_the_line(void)
-{
-    uint8_t chunk[1000];
-    send(0x60);
-    for (uint32_t i = 0; i < 30000; i++) {
-        now += 100;
-        TEST_ASSERT_TRUE(sim_link_read(&wire, now, chunk, sizeof chunk) <= 3);
-    }
-}
-
-static uint8_t other[STREAM_MAX];
-
-/* 5 s by a faultless wire in steps of 1 ms, and without it at once, in portions of this size. */
-static void expect_the_same_bytes_by(size_t portion)
-{
-    static const uint8_t start[2] = {0xA5, 0x60};
-    size_t other_size = 0;
-    size_t more;
-    send(0x60);
-    run_ms(5000);
-    sim_init(&sim, &config);
-    sim_receive(&sim, start, 2, 0);
-    do {
-        more = sim_transmit(&sim, 5 * SECOND, other + other_size, portion);
-        other_size += more;
-    } while (more > 0);
-    TEST_ASSERT_EQUAL_size_t(size, other_size);
-    TEST_ASSERT_EQUAL_MEMORY(stream, other, size);
-}
-
-void test_one_late_call_gives_the_same_bytes_as_many_early_ones(void)
-{
-    expect_the_same_bytes_by(STREAM_MAX);
-}
-
-void test_a_small_buffer_loses_nothing(void)
-{
-    expect_the_same_bytes_by(7);
-}
-
-/* The stream begins at 329.7 degrees and passes 0 degrees without a start packet. */
-void test_the_first_packets_may_pass_the_start_packets_place_without_one(void)
-{
-    config.beginning = SIM_BEGINS_UNMARKED;
-    config.first_angle_q6 = 21101;
-    power_up();
-    send(0x60);
-    run_ms(1500);
-    decode();
-    const size_t first = next_start(0);
-    TEST_ASSERT_UINT_WITHIN(config.angle_jitter_q6, 21101, packets[0].fsa >> 1);
-    TEST_ASSERT_TRUE(points_between(0, first) > 667); /* Part of a slow turn, and a whole one. */
-    TEST_ASSERT_TRUE(packets[first].fsa >> 1 <= 64 || packets[first].fsa >> 1 >= 22976);
-}
-
-/* The very first packet begins a revolution at 85.7 degrees; its frequency is 2.4 Hz. */
-void test_the_first_packet_may_be_a_start_packet_anywhere(void)
-{
-    config.beginning = SIM_BEGINS_WITH_A_START;
-    config.first_angle_q6 = 5485;
-    power_up();
-    send(0x60);
-    run_ms(1500);
-    decode();
-    TEST_ASSERT_TRUE(packets[0].starts_revolution);
-    TEST_ASSERT_EQUAL_HEX8(24 << 1 | 1, packets[0].ct);
-    TEST_ASSERT_UINT_WITHIN(config.angle_jitter_q6, 5485, packets[0].fsa >> 1);
-    const size_t second = next_start(1);
-    TEST_ASSERT_TRUE(packets[second].fsa >> 1 <= 64 || packets[second].fsa >> 1 >= 22976);
-}
-
-void test_last_crc_guards_the_ct_bytes_of_every_revolution(void)
-{
-    scan_seconds(20);
-    for (size_t start = next_start(0), turn = 0; turn < 100; turn++) {
-        const size_t next = next_start(start + 1u);
-        uint8_t crc = 0;
-        for (size_t i = start; i < next; i++) {
-            crc = encode_crc8(crc, packets[i].ct);
-        }
-        TEST_ASSERT_EQUAL_HEX8(crc, stream[packets[next].offset - 1u]);
-        start = next;
-    }
-}
-
-void test_last_crc_is_sometimes_aa(void)
-{
-    unsigned seen = 0;
-    config.frequency_chz = 1200;
-    power_up();
-    scan_seconds(120);
-    for (size_t i = 1; i < packet_count; i++) {
-        if (packets[i].starts_revolution && stream[packets[i].offset - 1u] == 0xAA) {
-            seen++;
-        }
-    }
-    TEST_ASSERT_TRUE(seen > 0);
-    TEST_ASSERT_EQUAL_UINT64(0, counts.checksum_errors);
-}
-
-void test_a_unit_without_ct_information_sends_neither_ct_nor_last_crc(void)
-{
-    config.ct_information = false;
-    power_up();
-    scan_seconds(10);
-    for (size_t i = 1; i < packet_count; i++) {
-        TEST_ASSERT_EQUAL_size_t(packets[i - 1u].offset + packets[i - 1u].length,
-                                 packets[i].offset);
-        if (packets[i].starts_revolution) {
-            TEST_ASSERT_UINT_WITHIN(1, 60, packets[i].ct >> 1);
-        } else {
-            TEST_ASSERT_EQUAL_HEX8(0, packets[i].ct);
-        }
-    }
-}
-
-void test_flags_2_and_3_occur_as_often_as_configured(void)
-{
-    unsigned flags[4] = {0, 0, 0, 0};
-    config.flagged_permille = 100;
-    power_up();
-    scan_seconds(10);
-    for (size_t i = 0; i < packet_count; i++) {
-        for (unsigned s = 0; s < packets[i].lsn; s++) {
-            flags[reference_point(packets[i].bytes, s).flag]++;
-        }
-    }
-    TEST_ASSERT_EQUAL_UINT(0, flags[1]);
-    TEST_ASSERT_UINT_WITHIN(300, 2000, flags[2]);
-    TEST_ASSERT_UINT_WITHIN(300, 2000, flags[3]);
-}
-
-void test_what_left_before_power_was_lost_can_still_be_read(void)
-{
-    uint32_t before;
-    sim_run_t run;
-    scan_seconds(1);
-    while (!sim_next_run(&sim, now, &run) || run.packet == NULL || run.offset > 0) {
-        now += 100;
-    }
-    before = sim.counts.packets;
-    sim_power(&sim, false, now + 1000); /* 23.04 bytes later */
-    TEST_ASSERT_UINT_WITHIN(1, 23, sim_transmit(&sim, now + 5000, stream, STREAM_MAX));
-    TEST_ASSERT_EQUAL_UINT32(before, sim.counts.packets);
-}
-
-/* 10 bits at 230400 baud are 43.403 us; a byte is there when all of it has left. */
-void test_the_time_of_a_byte_is_when_it_has_left(void)
-{
-    TEST_ASSERT_EQUAL_UINT64(1044, sim_byte_us(1000, 0));
-    TEST_ASSERT_EQUAL_UINT64(1087, sim_byte_us(1000, 1));
-    TEST_ASSERT_EQUAL_UINT64(4125, sim_byte_us(1000, 71));
-}
-
-/* 500 ms are 50 packets; the line's queue holds 16. */
-void test_frames_that_are_not_taken_in_time_are_lost_and_counted(void)
-{
-    static const uint8_t stop[2] = {0xA5, 0x65};
-    scan_seconds(1);
-    sim_receive(&sim, stop, 2, now + 500000);
-    TEST_ASSERT_UINT_WITHIN(8, 50 + 3 - 16, sim_lost_frames(&sim));
-}
-
-/* ---- Marks ---- */
-
-void test_no_two_marks_are_equal_and_none_is_a_data_fault(void)
-{
-    static bool seen[1u << 24];
-    config.marked = true;
-    power_up();
-    scan_seconds(20);
-    for (size_t at = 0; at < packet_count; at++) {
-        for (unsigned i = 0; i < packets[at].lsn; i++) {
-            const reference_point_t point = reference_point(packets[at].bytes, i);
-            bool *const mark = &seen[(uint32_t)point.intensity << 16 | (uint32_t)point.flag << 14 |
-                                     point.distance_mm];
-            TEST_ASSERT_FALSE(*mark);
-            *mark = true;
-        }
-    }
-    TEST_ASSERT_TRUE(counts.points > 79000);
-    TEST_ASSERT_EQUAL_HEX8(0, sim_health(&sim));
-}
-
-/* ---- The wire ---- */
-
-/* 60 s are about 780,000 bytes and 6400 packets. */
-static const row_t wires[] IN_FLASH = {
+    /* The wire. 60 s are about 780,000 bytes and 6400 packets. */
     ROW(without_faults_every_packet_is_intact, ">60 +10000 truth spoilt:0 faulty:0 untold:0"),
     ROW(dropped_bytes_cost_the_packets_they_were_in,
         "drop:1000 >60 +60000 begun.drop>679 begun.drop<881 truth intact>5459 intact<5861 "
@@ -863,8 +813,8 @@ static const row_t wires[] IN_FLASH = {
         ">60 +3000 inside force:unplug:1000 latest_intact:0 truth"),
     ROW(a_packet_cut_by_a_reboot_is_reported_as_hit,
         ">60 +3000 inside >40 +3000 >60 +1000 truth spoilt:1"),
-    ROW(a_packet_cut_without_the_wires_knowledge_is_reported_as_hit,
-        ">60 +3000 inside fails:300 +100 latest_intact:0 truth"),
+    ROW(what_left_before_power_was_lost_comes_and_the_packet_is_reported_as_hit,
+        ">60 +3000 inside mark fails:300 +100 new>5 new<9 latest_intact:0 truth"),
     ROW(unplugging_ends_a_burst_and_a_cut_under_way,
         ">60 +3000 force:burst:5000 force:cut:0 +1 force:burst:5000 force:unplug:1000 +2000 "
         "faulty:0 begun.burst:1 ended.burst:1 ended.cut:1"),
@@ -877,64 +827,14 @@ static const row_t wires[] IN_FLASH = {
         "180( >60 +1000 ) begun.drop>5 begun.flip>5 begun.insert>5 begun.burst>5 "
         "begun.stall>5 begun.cut>5 begun.garble>5 begun.unplug>5 calm +6000 truth"),
     ROW(a_calmed_wire_has_no_more_faults, "flip:1000 >60 +10000 calm forget +10000 begun.flip:0"),
+    ROW(a_spoiled_last_crc_does_not_hit_the_start_packet,
+        ">60 +3000 200( hit ) spoilt>100 spoilt<195"),
+    ROW(the_same_seed_gives_the_same_faults_whatever_the_steps,
+        "drop:1000 stall:500 garble:3000 >60 +10000 bytes>100000 keep >60 us:10000000 same"),
+    ROW(the_next_event_is_never_later_than_the_next_byte, "stall:200 >60 +3000 20000( step )"),
 };
 
-void test_the_wire(void)
+void test_the_simulated_lidar_and_the_wire(void)
 {
-    tell_rows(wires, tell);
-}
-
-/* Flips the first byte of a frame: LastCRC before a start packet, otherwise the header. */
-void test_a_spoiled_last_crc_does_not_hit_the_start_packet(void)
-{
-    unsigned starts = 0;
-    send(0x60);
-    run_ms(3000);
-    for (int i = 0; i < 200; i++) {
-        while (wire.packet_open) {
-            run_until(now + 20u);
-        }
-        const size_t before = fate_count;
-        sim_link_force(&wire, SIM_LINK_FLIP, 0, now);
-        while (fate_count == before) {
-            run_until(now + 20u);
-        }
-        TEST_ASSERT_EQUAL(fates[before].packet.sent.starts_revolution, fates[before].packet.intact);
-        starts += fates[before].packet.intact ? 1u : 0u;
-    }
-    TEST_ASSERT_TRUE(starts > 5);
-}
-
-void test_the_same_seed_gives_the_same_faults_whatever_the_steps(void)
-{
-    wire_config.mean_gap[SIM_LINK_DROP] = 1000;
-    wire_config.mean_gap[SIM_LINK_STALL] = 500;
-    wire_config.mean_gap[SIM_LINK_GARBLE] = 3000;
-    power_up();
-    send(0x60);
-    run_ms(10000);
-    memcpy(other, stream, size);
-    const size_t other_size = size;
-    power_up();
-    send(0x60);
-    run_until(10 * SECOND);
-    TEST_ASSERT_TRUE(size > 100000);
-    TEST_ASSERT_EQUAL_size_t(other_size, size);
-    TEST_ASSERT_EQUAL_MEMORY(other, stream, size);
-}
-
-void test_the_next_event_is_never_later_than_the_next_byte(void)
-{
-    wire_config.mean_gap[SIM_LINK_STALL] = 200;
-    power_up();
-    send(0x60);
-    run_ms(3000);
-    for (int i = 0; i < 20000; i++) {
-        const uint64_t next = sim_link_next_us(&wire);
-        if (next > now + 1u) {
-            TEST_ASSERT_EQUAL_size_t(0, sim_link_read(&wire, next - 1u, stream, 100));
-        }
-        now = next > now ? next : now + 1u;
-        sim_link_read(&wire, now, stream, 100);
-    }
+    tell_rows(rows, tell);
 }
