@@ -71,7 +71,7 @@ bool like_read_number(options_t *options, const number_t *number, const char *te
     return true;
 }
 
-bool like_set_beginning(options_t *options, const char *value)
+static bool set_beginning(options_t *options, const char *value)
 {
     static const char *const names[] = {[SIM_BEGINS_ANYWHERE] = "anywhere",
                                         [SIM_BEGINS_UNMARKED] = "unmarked",
@@ -126,7 +126,7 @@ static bool set_serial(sim_config_t *device, const char *value)
     return true;
 }
 
-static bool set(options_t *options, const char *key, const char *value)
+bool like_set(options_t *options, const char *key, const char *value)
 {
     sim_config_t *device = &options->device;
     if (strcmp(value, "unknown") == 0) {
@@ -143,7 +143,7 @@ static bool set(options_t *options, const char *key, const char *value)
         return set_serial(device, value);
     }
     if (strcmp(key, "first_packets") == 0) {
-        return like_set_beginning(options, value);
+        return set_beginning(options, value);
     }
     if (strcmp(key, "lone_packets") == 0 && strcmp(value, "no") == 0) {
         device->lone_packet_permille = 0;
@@ -162,7 +162,7 @@ bool like_read(options_t *options, const char *path)
         char key[40];
         char value[120];
         if (line[0] != '#' && sscanf(line, "%39s = %119[^\n]", key, value) == 2) {
-            is_good = set(options, key, value);
+            is_good = like_set(options, key, value);
             is_report = true;
         }
     }

@@ -31,11 +31,12 @@ typedef struct {
 bool like_parse(const char *text, double low, double high, double *number);
 bool like_read_number(options_t *options, const number_t *number, const char *text);
 
-/* How a scan begins: "anywhere", "unmarked", "start". False: no such name. */
-bool like_set_beginning(options_t *options, const char *value);
+/* A line of a report. False: the value is invalid. Other keys and the value "unknown" change
+ * nothing. */
+bool like_set(options_t *options, const char *key, const char *value);
 
-/* Reads the file. False if it cannot be read, contains no such line, or a value is invalid. Other
- * keys, the value "unknown" and lines that begin with # change nothing. */
+/* Reads the file. False if it cannot be read, contains no such line, or a value is invalid. Lines
+ * that begin with # change nothing. */
 bool like_read(options_t *options, const char *path);
 
 #endif

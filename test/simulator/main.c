@@ -75,7 +75,7 @@ static void exchange(const options_t *options, uint64_t now_us)
 {
     uint8_t bytes[4096];
     size_t count = host_read(&host, bytes, sizeof bytes);
-    if (options->boots && host.connected) {
+    if (options->boot_ms >= 0 && host.connected) {
         sim_power(&device, true, now_us); /* without effect if it has power */
     }
     if (count > 0) {
@@ -198,7 +198,7 @@ static void set_up(const options_t *options)
 {
     sim_init(&device, &options->device);
     bridge_init(&bridge, &options->bridge);
-    if (options->boots) {
+    if (options->boot_ms >= 0) {
         sim_power(&device, false, 0);
     }
     sim_set_health(&device, options->health);
@@ -239,7 +239,7 @@ int main(int argc, char **argv)
     catch_signals();
     set_up(&options);
     if ((options.pty && !host_open_pty(&host)) ||
-        (options.tcp && !host_open_tcp(&host, options.tcp_port)) ||
+        (options.tcp_port >= 0 && !host_open_tcp(&host, (uint16_t)options.tcp_port)) ||
         !report_open(&report, options.log_path, options.truth_path, &device, &wire)) {
         return EXIT_FAILURE;
     }

@@ -24,24 +24,6 @@ typedef struct {
 } option_t;
 
 #define PLACE(member) offsetof(options_t, member)
-static bool set_no_ct(options_t *options, const char *value)
-{
-    (void)value;
-    options->device.ct_information = false;
-    return true;
-}
-
-static bool set_tcp(options_t *options, const char *value)
-{
-    double port;
-    options->tcp = true;
-    if (!like_parse(value, 0, 65535, &port) || port > (double)(uint16_t)port) {
-        return false;
-    }
-    options->tcp_port = (uint16_t)port;
-    return true;
-}
-
 static bool set_frequency(options_t *options, const char *value)
 {
     const number_t frequency =
@@ -50,17 +32,9 @@ static bool set_frequency(options_t *options, const char *value)
     return like_read_number(options, &frequency, value);
 }
 
-/* Major and minor have one digit each, as on the units' labels. */
 static bool set_firmware(options_t *options, const char *value)
 {
-    encode_information_t *const information = &options->device.information;
-    if (strlen(value) != 3 || value[1] != '.' || value[0] < '0' || value[0] > '9' ||
-        value[2] < '0' || value[2] > '9') {
-        return false;
-    }
-    information->firmware_major = (uint8_t)(value[0] - '0');
-    information->firmware_minor = (uint8_t)(value[2] - '0');
-    return true;
+    return like_set(options, "firmware", value);
 }
 
 /* The angles are those of two real units (section 9.8): 329.7 and 85.7 degrees. */
@@ -69,20 +43,11 @@ static bool set_begin(options_t *options, const char *value)
     static const uint16_t first_q6[] = {
         [SIM_BEGINS_UNMARKED] = 21101, [SIM_BEGINS_WITH_A_START] = 5485};
     sim_config_t *const device = &options->device;
-    const bool is_known = like_set_beginning(options, value);
+    const bool is_known = like_set(options, "first_packets", value);
     if (device->beginning != SIM_BEGINS_ANYWHERE) {
         device->first_angle_q6 = first_q6[device->beginning];
     }
     return is_known;
-}
-
-/* The six bits of section 4, decimal or hexadecimal (0x...). */
-static bool set_health(options_t *options, const char *value)
-{
-    char *end;
-    const unsigned long bits = strtoul(value, &end, 0);
-    options->health = (uint8_t)(bits & 0x3Fu);
-    return end != value && *end == '\0' && *value != '-' && bits <= 0x3Fu;
 }
 
 static bool set_seed(options_t *options, const char *value)
@@ -93,22 +58,15 @@ static bool set_seed(options_t *options, const char *value)
     return end != value && *end == '\0' && *value != '-';
 }
 
-static sim_link_kind_t kind_before(const char *value, const char *equals)
-{
-    char name[16] = "";
-    if ((size_t)(equals - value) < sizeof name) {
-        memcpy(name, value, (size_t)(equals - value));
-    }
-    return sim_link_kind_named(name);
-}
-
 /* The value is a probability per byte, or events per second; the link needs its inverse. */
 static bool set_fault(options_t *options, const char *value)
 {
-    const char *equals = strchr(value, '=');
-    const sim_link_kind_t kind = equals == NULL ? SIM_LINK_KINDS : kind_before(value, equals);
+    char name[16];
+    int length = 0;
     double rate;
-    if (kind == SIM_LINK_KINDS || !like_parse(equals + 1, 1e-9, 100, &rate)) {
+    const bool is_named = sscanf(value, "%15[a-z]=%n", name, &length) == 1 && length > 0;
+    const sim_link_kind_t kind = is_named ? sim_link_kind_named(name) : SIM_LINK_KINDS;
+    if (kind == SIM_LINK_KINDS || !like_parse(value + length, 1e-9, 100, &rate)) {
         return false;
     }
     const double gap = (sim_link_counts_bytes(kind) ? 1.0 : 1000.0) / rate;
@@ -119,22 +77,9 @@ static bool set_fault(options_t *options, const char *value)
     return true;
 }
 
-static bool set_samples(options_t *options, const char *value)
-{
-    options->device.sample_size = (uint8_t)(value[0] - '0');
-    return strcmp(value, "2") == 0 || strcmp(value, "3") == 0 || strcmp(value, "4") == 0;
-}
-
 static bool set_bridge(options_t *options, const char *value)
 {
     return bridge_kind_named(value, &options->bridge.kind);
-}
-
-static bool set_boot(options_t *options, const char *value)
-{
-    static const number_t boot = NUMBER(device.boot_ms, 1000, 0, 60);
-    options->boots = true;
-    return like_read_number(options, &boot, value);
 }
 
 static bool set_mast(options_t *options, const char *value)
@@ -155,7 +100,7 @@ static const option_t known[] = {
     {"pty", NULL, "serve a pseudo-terminal; its path is the first line printed",
      .place = PLACE(pty)},
     {"tcp", "PORT", "serve 127.0.0.1:PORT (0: any free port, printed in the first line)",
-     .set = set_tcp},
+     .number = NUMBER(tcp_port, 1, 0, 65535)},
     {"lines", NULL,
      "time comes by standard input: lines of MICROSECONDS and the bytes\n"
      "                          received then, in hexadecimal; each is answered by the bytes sent",
@@ -170,23 +115,24 @@ static const option_t known[] = {
      .set = set_begin},
     {"like", "REPORT", "as the unit that `tmini survey` has written this report of",
      .set = like_read},
-    {"no-ct", NULL, "send neither CT information nor LastCRC", .set = set_no_ct},
+    {"no-ct", NULL, "send neither CT information nor LastCRC",
+     .place = PLACE(device.ct_information)},
     {"blocked", NULL, "the rotor does not turn", .place = PLACE(blocked)},
     {"covered", NULL, "the window is covered: no ranges", .place = PLACE(covered)},
     {"health", "BITS",
      "faults reported, 0 to 0x3F: 1 sensor, 2 encoder,\n"
      "                          4 wireless power, 8 PD, 16 LD, 32 data (0)",
-     .set = set_health},
+     .number = NUMBER(health, 1, 0, 63)},
     {"motor", "PERCENT", "share of the set frequency that the motor reaches, 1 to 150 (100)",
      .number = NUMBER(device.motor_percent, 1, 1, 150)},
     {"spin-up", "SECONDS", "time from standstill to that speed, 0 to 60 (1)",
      .number = NUMBER(device.spin_up_ms, 1000, 0, 60)},
     {"boot", "SECONDS", "gets power when the port is opened, and boots for 0 to 60 s",
-     .set = set_boot},
+     .number = NUMBER(boot_ms, 1000, 0, 60)},
     {"model", "N", "number of the model (151)",
      .number = NUMBER(device.information.model, 1, 0, 255)},
     {"samples", "BYTES", "packets of another unit: samples of 2 or 4 bytes (3)",
-     .set = set_samples},
+     .number = NUMBER(device.sample_size, 1, 2, 4)},
     {"blind", "N", "each turn of N has no range, and no fault",
      .number = NUMBER(device.blind_every, 1, 1, 255)},
     {"bridge", "KIND",
@@ -266,8 +212,8 @@ static int on_standard_output(const char *path)
 
 static bool is_consistent(const options_t *options)
 {
-    const int modes = (options->pty ? 1 : 0) + (options->tcp ? 1 : 0) + (options->lines ? 1 : 0) +
-                      (options->write_path == NULL ? 0 : 1);
+    const int modes = (options->pty ? 1 : 0) + (options->tcp_port >= 0 ? 1 : 0) +
+                      (options->lines ? 1 : 0) + (options->write_path == NULL ? 0 : 1);
     if (options->help || options->version) {
         return true;
     }
@@ -327,7 +273,7 @@ static bool set(options_t *options, const option_t *option, const char *value)
         return like_read_number(options, &option->number, value);
     }
     if (option->value == NULL) {
-        *(bool *)place = true;
+        *(bool *)place = strncmp(option->name, "no-", 3) != 0;
     } else {
         memcpy(place, &value, sizeof value);
     }
@@ -352,6 +298,8 @@ bool options_parse(options_t *options, int argc, char **argv)
     int answer;
     memset(options, 0, sizeof *options);
     memset(long_ones, 0, sizeof long_ones);
+    options->tcp_port = -1;
+    options->boot_ms = -1;
     options->speed = 1.0;
     options->device = sim_default_config();
     options->link = sim_link_default_config();
@@ -362,5 +310,7 @@ bool options_parse(options_t *options, int argc, char **argv)
         }
         at = optind;
     }
+    options->device.boot_ms =
+        options->boot_ms < 0 ? options->device.boot_ms : (uint16_t)options->boot_ms;
     return optind == argc ? is_consistent(options) : complain(argv[optind], " is not an option");
 }

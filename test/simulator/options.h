@@ -13,8 +13,7 @@ typedef struct {
     bool help;
     bool version;
     bool pty;
-    bool tcp;
-    uint16_t tcp_port; /* 0: any free one */
+    int32_t tcp_port; /* 0: any free one; -1: none */
     bool lines;
     const char *write_path; /* in each path NULL means none, "-" standard output */
     const char *log_path;
@@ -27,7 +26,7 @@ typedef struct {
     sim_config_t device;
     sim_link_config_t link;
     bridge_config_t bridge;
-    bool boots; /* the lidar gets power only when the port is opened first */
+    int32_t boot_ms; /* it gets power only when the port is opened first; -1: at once */
 } options_t;
 
 /* If the arguments are wrong, prints what to do on standard error and returns false. */
