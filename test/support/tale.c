@@ -506,8 +506,8 @@ static void tell_word(char *word)
     memcpy(tale.word, word, strlen(word) + 1);
     if (strchr("><+~!@#?", word[0]) != NULL) {
         tell_sign(word);
-    } else if (tell_phrase(phrases, word) || tell_phrase(tale_phrases, word) ||
-               tell_means(word) || (tale_words != NULL && tale_words(word))) {
+    } else if (tell_phrase(phrases, word) || tell_phrase(tale_phrases, word) || tell_means(word) ||
+               (tale_words != NULL && tale_words(word))) {
         return;
     } else if (!tale.is_set_up || !expect_number(word)) {
         tell_call(word);
@@ -544,6 +544,7 @@ void tale_begin(void)
 
 void tale_tell_row(const row_t *row)
 {
+    tale.is_set_up = false; /* If the row before has failed, its tale does not go on. */
     tale_begin();
     tale.line = row->line;
     tale_tell(row->steps);

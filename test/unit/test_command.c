@@ -5,11 +5,6 @@
 
 #include "tale.h"
 
-void tearDown(void)
-{
-    tale_end();
-}
-
 /* The header of a packet of 40 samples. */
 #define CUT_PACKET "<x:AA550028010001000000 "
 

@@ -10,11 +10,6 @@
 
 static uint8_t memory[8192];
 
-void tearDown(void)
-{
-    tale_end();
-}
-
 /* "large": the receive buffer has 8192 bytes; "forget-info": nothing is to be told of information
  * any more. */
 static bool tell(char *word)

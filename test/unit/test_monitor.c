@@ -12,16 +12,6 @@ static const tale_phrase_t phrases[] = {
     {NULL, NULL},
 };
 
-void setUp(void)
-{
-    tale_phrases = phrases;
-}
-
-void tearDown(void)
-{
-    tale_end();
-}
-
 #define SCANS "no-scans scans "
 #define DATA_FAULT SCANS "2( <blind !NONE ) <blind !FAULTS faults:0x20 "
 /* Point packets without a range, 4000 samples per second. */
@@ -150,5 +140,6 @@ static const row_t tales[] IN_FLASH = {
 
 void test_tales(void)
 {
+    tale_phrases = phrases;
     run_rows(tales, tale_tell_row);
 }

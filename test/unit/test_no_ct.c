@@ -5,11 +5,6 @@
 
 #include "tale.h"
 
-void tearDown(void)
-{
-    tale_end();
-}
-
 static const row_t tales[] IN_FLASH = {
     ROW(nothing_is_known_of_a_unit_that_reports_itself,
         "no-scans scans 4( <ct:1 !NONE ) known:0 user:0 faults:0"),

@@ -56,16 +56,6 @@ static bool tell(char *word)
     return true;
 }
 
-void setUp(void)
-{
-    tale_words = tell;
-}
-
-void tearDown(void)
-{
-    tale_end();
-}
-
 #define STREAMS_WITH(limit) \
     "ring packets pause:" limit " starts ~1 <P !STARTED !PACKET !NONE 2( ~1 <P !PACKET !NONE ) "
 #define STREAMS STREAMS_WITH("30")
@@ -123,5 +113,6 @@ static const row_t tales[] IN_FLASH = {
 
 void test_tales(void)
 {
+    tale_words = tell;
     run_rows(tales, tale_tell_row);
 }

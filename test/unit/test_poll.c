@@ -6,11 +6,6 @@
 
 #include "tale.h"
 
-void tearDown(void)
-{
-    tale_end();
-}
-
 /* It claims more bytes than come, so it hides what comes after it. */
 #define HEADER_OF_80 "<x:AA550050010001000000 "
 #define HEADER_OF_40 "<x:AA550028010001000000 "

@@ -18,16 +18,6 @@ static const tale_phrase_t phrases[] = {
     {NULL, NULL},
 };
 
-void setUp(void)
-{
-    tale_phrases = phrases;
-}
-
-void tearDown(void)
-{
-    tale_end();
-}
-
 #define NO_AGE "age:2147483647 "
 
 static const row_t tales[] IN_FLASH = {
@@ -174,5 +164,6 @@ static const row_t tales[] IN_FLASH = {
 
 void test_tales(void)
 {
+    tale_phrases = phrases;
     run_rows(tales, tale_tell_row);
 }

@@ -6,11 +6,6 @@
 
 #include "tale.h"
 
-void tearDown(void)
-{
-    tale_end();
-}
-
 /* A packet of 80 samples without a range. */
 #define LARGEST "<x:AA55005001000100AA05 <zeros:240 "
 
