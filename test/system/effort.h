@@ -10,8 +10,22 @@
 #define EFFORT_H
 
 #include <stdint.h>
+#include <stdlib.h>
 
-uint32_t effort(void);
-uint32_t effort_seed(void);
+static inline uint32_t effort_of(const char *name)
+{
+    const char *const text = getenv(name);
+    return text != NULL && text[0] != '\0' ? (uint32_t)strtoul(text, NULL, 10) : 1;
+}
+
+static inline uint32_t effort(void)
+{
+    return effort_of("TMINI_TEST_EFFORT");
+}
+
+static inline uint32_t effort_seed(void)
+{
+    return effort_of("TMINI_TEST_SEED");
+}
 
 #endif

@@ -23,7 +23,7 @@ static uint8_t bytes[STREAM_MAX];
 static uint8_t accepted[STREAM_MAX];
 static size_t size;
 static receiver_t receiver;
-static random_t random;
+static random_t dice;
 static uint32_t seed;
 
 void tearDown(void)
@@ -35,18 +35,18 @@ void tearDown(void)
 
 static bool one_in(uint32_t times)
 {
-    return random_below(&random, times) == 0;
+    return random_below(&dice, times) == 0;
 }
 
 /* ----------------------------------------------------------------------------- making streams */
 
 static encode_sample_t any_sample(bool lookalike)
 {
-    const uint32_t distance = lookalike ? corrupt_lookalike(&random) * 64u : random_u32(&random);
+    const uint32_t distance = lookalike ? corrupt_lookalike(&dice) * 64u : random_u32(&dice);
     return (encode_sample_t){
         .distance_mm = (uint16_t)(distance & 0x3FFFu),
-        .intensity = lookalike ? corrupt_lookalike(&random) : (uint8_t)random_u32(&random),
-        .flag = (uint8_t)random_below(&random, 4),
+        .intensity = lookalike ? corrupt_lookalike(&dice) : (uint8_t)random_u32(&dice),
+        .flag = (uint8_t)random_below(&dice, 4),
     };
 }
 
@@ -58,7 +58,7 @@ static void put_packet_inside(uint8_t *packet, size_t lsn)
     const encode_packet_t start = {0x79, 1, 10, 10, &sample};
     const size_t length = encode_packet(inner, &start);
     if (3 * lsn > length) {
-        memcpy(&packet[10 + random_below(&random, (uint32_t)(3 * lsn - length))], inner, length);
+        memcpy(&packet[10 + random_below(&dice, (uint32_t)(3 * lsn - length))], inner, length);
         encode_seal(packet);
     }
 }
@@ -68,10 +68,10 @@ static void add_packet(unsigned lsn, bool is_start)
     encode_sample_t samples[255];
     const bool lookalike = one_in(3);
     const encode_packet_t packet = {
-        .ct = (uint8_t)((random_u32(&random) & 0xFEu) | (is_start ? 1u : 0u)),
+        .ct = (uint8_t)((random_u32(&dice) & 0xFEu) | (is_start ? 1u : 0u)),
         .lsn = (uint8_t)lsn,
-        .first_q6 = (uint16_t)random_below(&random, 32768),
-        .last_q6 = (uint16_t)random_below(&random, 32768),
+        .first_q6 = (uint16_t)random_below(&dice, 32768),
+        .last_q6 = (uint16_t)random_below(&dice, 32768),
         .samples = samples,
     };
     for (unsigned i = 0; i < lsn; i++) {
@@ -92,7 +92,7 @@ static void add_reply(void)
     if (STREAM_MAX - size < ENCODE_REPLY_MAX) {
         return;
     }
-    switch (random_below(&random, 4)) {
+    switch (random_below(&dice, 4)) {
     case 0:
         size += encode_scan_reply(&bytes[size]);
         break;
@@ -103,7 +103,7 @@ static void add_reply(void)
         size += encode_health_reply(&bytes[size], 0x22, 0xAA55);
         break;
     default:
-        size += encode_frequency_reply(&bytes[size], 600 + random_below(&random, 600));
+        size += encode_frequency_reply(&bytes[size], 600 + random_below(&dice, 600));
         break;
     }
 }
@@ -111,18 +111,18 @@ static void add_reply(void)
 static unsigned any_lsn(unsigned max_samples)
 {
     const unsigned limit = max_samples < 254 ? max_samples + 1 : 255; /* Sometimes one too many. */
-    return one_in(4) ? random_between(&random, 1, limit)
-                     : random_between(&random, 1, limit < 12 ? limit : 12);
+    return one_in(4) ? random_between(&dice, 1, limit)
+                     : random_between(&dice, 1, limit < 12 ? limit : 12);
 }
 
 static void make_stream(unsigned max_samples)
 {
     const bool with_replies = one_in(2);
     size = 0;
-    for (unsigned left = random_between(&random, 1, 60); left > 0; left--) {
+    for (unsigned left = random_between(&dice, 1, 60); left > 0; left--) {
         if (one_in(6)) {
             if (one_in(2) && size < STREAM_MAX) {
-                bytes[size++] = corrupt_lookalike(&random);
+                bytes[size++] = corrupt_lookalike(&dice);
             }
             add_packet(1, true);
         } else {
@@ -132,7 +132,7 @@ static void make_stream(unsigned max_samples)
             add_reply();
         }
     }
-    size = corrupt_some(&random, random_below(&random, 12), bytes, size, STREAM_MAX);
+    size = corrupt_some(&dice, random_below(&dice, 12), bytes, size, STREAM_MAX);
 }
 
 /* ------------------------------------------------------------------------------------ the setup */
@@ -141,7 +141,7 @@ static const reference_reply_t *any_awaited(void)
 {
     static const reference_reply_t shapes[] = {
         {1, 0x81, 0}, {0, 0x04, 20}, {0, 0x06, 3}, {0, 0x04, 4}};
-    const uint32_t choice = random_below(&random, 6);
+    const uint32_t choice = random_below(&dice, 6);
     return choice < 4 ? &shapes[choice] : NULL;
 }
 
@@ -161,13 +161,13 @@ static void open_any_ring(unsigned max_samples, bool dma)
     } else {
         receiver_open(&receiver, memory, ring_size, (uint8_t)max_samples);
     }
-    receiver_age(&receiver, (size_t)0 - random_below(&random, 8000));
+    receiver_age(&receiver, (size_t)0 - random_below(&dice, 8000));
 }
 
 static unsigned any_max_samples(void)
 {
     static const uint8_t limits[] = {1, 2, 5, 40, 80, 80, 80, 82, 255};
-    return limits[random_below(&random, sizeof limits)];
+    return limits[random_below(&dice, sizeof limits)];
 }
 
 /* ----------------------------------------------------------------------------------- the tests */
@@ -176,8 +176,8 @@ static void compare_one_stream(bool dma)
 {
     const unsigned max_samples = any_max_samples();
     const receiver_course_t course = {
-        .chunk = one_in(3) ? random_between(&random, 1, 5000) : 0,
-        .random = &random,
+        .chunk = one_in(3) ? random_between(&dice, 1, 5000) : 0,
+        .random = &dice,
         .awaited = any_awaited(),
     };
     make_stream(max_samples);
@@ -189,7 +189,7 @@ void test_the_parser_finds_what_the_reference_decoder_finds(void)
 {
     for (uint32_t i = 0; i < STREAMS * effort(); i++) {
         seed = effort_seed() + i;
-        random_seed(&random, seed);
+        random_seed(&dice, seed);
         compare_one_stream(i % 2 == 0);
     }
 }
@@ -198,11 +198,11 @@ void test_the_parser_finds_what_the_reference_decoder_finds_in_garbage(void)
 {
     for (uint32_t i = 0; i < STREAMS / 4 * effort(); i++) {
         seed = effort_seed() + i;
-        random_seed(&random, seed);
-        const receiver_course_t course = {.random = &random, .awaited = any_awaited()};
+        random_seed(&dice, seed);
+        const receiver_course_t course = {.random = &dice, .awaited = any_awaited()};
         const unsigned max_samples = any_max_samples();
-        size = random_below(&random, 3000);
-        corrupt_fill(&random, bytes, size);
+        size = random_below(&dice, 3000);
+        corrupt_fill(&dice, bytes, size);
         open_any_ring(max_samples, i % 2 == 0);
         (void)receiver_compare(&receiver, &course, bytes, size);
     }
@@ -242,7 +242,7 @@ static size_t feed_carelessly(void)
     for (size_t fed = 0; fed < size;) {
         const size_t refused = tmini_ring_overrun(&receiver.ring);
         const size_t left = size - fed;
-        size_t chunk = random_between(&random, 1, 300);
+        size_t chunk = random_between(&dice, 1, 300);
         chunk = chunk < left ? chunk : left;
         receiver_feed(&receiver, &bytes[fed], chunk);
         const size_t taken = chunk - (tmini_ring_overrun(&receiver.ring) - refused);
@@ -252,7 +252,7 @@ static size_t feed_carelessly(void)
             gaps[gap_count++] = kept;
         }
         fed += chunk;
-        for (uint32_t reads = random_below(&random, 4); reads > 0; reads--) {
+        for (uint32_t reads = random_below(&dice, 4); reads > 0; reads--) {
             const tmini_frame_type_t frame = receiver_next(&receiver);
             if (frame != TMINI_FRAME_NONE) {
                 note_frame(frame);
@@ -318,7 +318,7 @@ void test_a_ring_that_overflows_loses_the_refused_bytes_and_nothing_else(void)
     uint32_t overflows = 0;
     for (uint32_t i = 0; i < STREAMS / 4 * effort(); i++) {
         seed = effort_seed() + i;
-        random_seed(&random, seed);
+        random_seed(&dice, seed);
         overflows += overflow_one_stream() > 0 ? 1 : 0;
     }
     TEST_ASSERT_TRUE(overflows > STREAMS / 20);
@@ -352,7 +352,7 @@ static void expect_as_received(void)
 static size_t feed_some(size_t fed)
 {
     const size_t left = size - fed;
-    size_t chunk = random_between(&random, 0, (uint32_t)receiver.size);
+    size_t chunk = random_between(&dice, 0, (uint32_t)receiver.size);
     chunk = chunk < left ? chunk : left;
     receiver_feed(&receiver, &bytes[fed], chunk);
     return fed + chunk;
@@ -383,7 +383,7 @@ void test_dma_that_overruns_the_reader_never_makes_a_wrong_point(void)
     uint32_t overruns = 0;
     for (uint32_t i = 0; i < STREAMS / 4 * effort(); i++) {
         seed = effort_seed() + i;
-        random_seed(&random, seed);
+        random_seed(&dice, seed);
         overruns += overrun_one_stream() > 0 ? 1 : 0;
     }
     TEST_ASSERT_TRUE(overruns > STREAMS / 20);
