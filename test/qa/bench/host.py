@@ -14,8 +14,7 @@ PACKET = 131  # Bytes per block: about a packet, or 10 ms.
 def build(folder):
     program = folder / "host"
     run("cc", "-std=c99", "-O2", "-g", f"-ffile-prefix-map={ROOT}=.", "-I", ROOT / "lib" / "include",
-        "-I", HERE, *(HERE / name for name in ("host/main.c", "emulated/main.c", "limit.c")), *LIB_SOURCES,
-        "-o", program)
+        "-I", HERE, HERE / "host" / "main.c", HERE / "emulated" / "main.c", *LIB_SOURCES, "-o", program)
     return program
 
 
@@ -37,13 +36,12 @@ def measure(folder, clean, packets, blocks):
     recording = folder / "clean.bin"
     recording.write_bytes(clean)
 
-    def cost(way, block=PACKET, expected=packets):
+    def cost(way, block=PACKET):
         each, found = count(program, way, recording, block, folder)
-        if found != expected:
-            raise BenchError(f"{way}: {found} packets are found instead of {expected}")
+        if found != packets:
+            raise BenchError(f"{way}: {found} packets are found instead of {packets}")
         return each
 
     return {"bytes": cost("bytes"), "blocks": cost("blocks"), "decode": cost("decode"),
-            "limit": cost("limit", expected=0),
             "per poll": {block: {way: cost(way, block) for way in ("bytes", "blocks")}
                          for block in blocks}}

@@ -215,20 +215,6 @@ def longest_poll(target, program, clean):
     return worst.search(cost)
 
 
-def limit(target, program, stream):
-    """The lowest possible cost of decoding, per byte."""
-    machine = Machine(target.name, program)
-    at = cost = 0
-    while len(stream) - at >= 13:
-        block = stream[at:at + 4096]
-        machine.write("bench_block", block)
-        used, count = machine.cost("limit_decode", machine.addresses["bench_block"], len(block),
-                                   machine.addresses["bench_limit_points"])
-        at += used
-        cost += count
-    return cost / at
-
-
 def conversation(target, program, clean, faulty):
     """Makes every event occur; returns the deepest stack."""
     session = Session(target, program)
@@ -309,10 +295,9 @@ def check_counting(target, program, clean):
 
 
 def link(target, level, objects, folder):
-    sources = (HERE / "emulated" / "main.c", HERE / "limit.c")
-    extra = [target.compile(source, level, folder / "emulated", "-I", HERE) for source in sources]
+    extra = target.compile(HERE / "emulated" / "main.c", level, folder / "emulated")
     program = folder / "emulated.elf"
-    target.link([*objects, *extra], program, [*flash.DRIVER, "limit_decode", "bench_limit_points", "bench_counters"])
+    target.link([*objects, extra], program, [*flash.DRIVER, "bench_counters"])
     return program
 
 
@@ -337,7 +322,7 @@ def measure(target, level, objects, folder, streams):
             caller = session.machine.cost("interrupt_nothing")[1]
     costs["corrupted"], _ = through(target, program, streams["corrupted"], "blocks")
     figures = {"costs": costs, "feed worst": feed_worst, "idle poll": idle, "caller": caller,
-               "limit": limit(target, program, clean), "tmini_t": session.machine.sizes["bench_lidar"],
+               "tmini_t": session.machine.sizes["bench_lidar"],
                "per poll": {count: {feed: per_poll(target, program, streams["turn"], feed, count)
                                     for feed in ("bytes", "blocks")} for count in BYTES_PER_POLL},
                "stack seen": conversation(target, program, streams["turn"], streams["faulty"])}

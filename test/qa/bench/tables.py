@@ -39,20 +39,6 @@ def memory(figures):
                   "stack, polling, at most", "seen", "interrupt, at most"], rows)
 
 
-def modules(figures):
-    chosen = [(title, f["flash"]["everything"]["modules"]) for title, f in small(figures)]
-    names = sorted(set().union(*(module for _, module in chosen)))
-    rows = [[f"`{name}`", *(module.get(name, 0) for _, module in chosen)] for name in names]
-    rows.append(["all", *(sum(module.values()) for _, module in chosen)])
-    return table(["bytes of flash", *(title for title, _ in chosen)], rows)
-
-
-def compilers(figures):
-    return table(["`-Os`", "full driver", "C library", "instructions per byte, by blocks"],
-                 [[f["title"], f["driver"]["own"], f["driver"]["support"], one(f["blocks"])]
-                  for f in figures["compilers"].values()])
-
-
 def optional(figures):
     rows = []
     m0, m4 = (figures["targets"][name, "-Os"]["optional"] for name in ("cortex-m0", "cortex-m4"))
@@ -86,8 +72,7 @@ def compared(figures):
     """Instructions of the library and the program: on x86-64 with its loop, on Cortex-M4 with its interrupt."""
     host = figures["host"]
     m4 = [figures["targets"]["cortex-m4", level]["counts"] for level in LEVELS]
-    rows = [["the limit", one(host["limit"]), *(one(f["limit"]) for f in m4)],
-            ["ring to scan, by blocks", one(host["decode"]), "–", "–"]]
+    rows = [["ring to scan, by blocks", one(host["decode"]), "–", "–"]]
     rows += [[f"full driver, by {feed}", one(host[feed]),
               *(one(sum(f["costs"][feed]) + (f["caller"] if feed == "bytes" else 0)) for f in m4)]
              for feed in ("blocks", "bytes")]
@@ -139,8 +124,7 @@ def summary(figures):
     return table(["`-Os`", "Cortex-M0", "Cortex-M4"], rows)
 
 
-BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "modules": modules,
-          "compilers": compilers, "optional": optional,
+BLOCKS = {"versions": versions, "budgets": budgets, "memory": memory, "optional": optional,
           "instructions": instructions, "per-poll": per_poll,
           "compared": compared, "load": cpu, "pauses": pauses, "footprint": summary}
 

@@ -5,19 +5,17 @@
  * variables. Only the library's instructions are counted; of this file, only its inline function in
  * the interrupt. */
 
-#include "limit.h"
 #include "tmini/tmini.h"
 
 #define RX_SIZE 4096
 
 tmini_t bench_lidar;
 uint8_t bench_rx[RX_SIZE];
-uint8_t bench_block[RX_SIZE + 4]; /* limit_decode() also reads the byte after the last one. */
+uint8_t bench_block[RX_SIZE];
 uint32_t bench_now_ms;
 uint8_t bench_sent;
 
 tmini_counters_t bench_counters;
-limit_point_t bench_limit_points[LIMIT_POINTS];
 
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_point_t packet_points[TMINI_MAX_SAMPLES_DEFAULT];

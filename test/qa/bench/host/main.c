@@ -6,12 +6,10 @@
  *
  *   host bytes|blocks FILE BYTES   feeds BYTES at a time, then polls until there is no event
  *   host decode FILE BYTES         feeds blocks to only ring, parser, packet and scan
- *   host limit FILE BYTES          the lowest possible cost (limit.h); BYTES is ignored
  *
  * Prints the number of scan packets found. Everything in counted_run() is counted: the library, the
  * C library's copy functions, the clock, and the program's loop around them. */
 
-#include "limit.h"
 #include "tmini/tmini.h"
 
 #include <stdio.h>
@@ -29,7 +27,6 @@ static uint8_t recording[CAPACITY];
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL];
 static tmini_parser_t parser;
-static limit_point_t limit_points[CAPACITY / 3];
 
 static void poll_all(void)
 {
@@ -94,9 +91,7 @@ static void decode_all(size_t size, size_t block)
 /* Only instructions in this function are counted. */
 TMINI_NOINLINE static void counted_run(const char *way, size_t size, size_t block)
 {
-    if (way[0] == 'l') {
-        (void)limit_decode(recording, size, limit_points);
-    } else if (way[0] == 'd') {
+    if (way[0] == 'd') {
         decode_all(size, block);
     } else {
         drive_all(size, block, way[1] == 'y');
@@ -120,7 +115,7 @@ int main(int argc, char **argv)
     const size_t block = argc == 4 ? (size_t)strtoul(argv[3], NULL, 10) : 0;
     tmini_counters_t counters;
     if (size == 0 || block == 0) {
-        fputs("usage: host bytes|blocks|decode|limit FILE BYTES\n", stderr);
+        fputs("usage: host bytes|blocks|decode FILE BYTES\n", stderr);
         return 2;
     }
     bench_begin(false, false, sizeof rx, TMINI_FILTER_NONE);
