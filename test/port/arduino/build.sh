@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-# Packs the Arduino library, unless ARCHIVE is given, and builds one of its sketches with Arduino's
-# own builder and AVR core:
+# Builds a sketch of the release's Arduino library with Arduino's own builder and AVR core:
 #
-#   build.sh CMAKE SKETCH BOARD RAM [ARCHIVE]
+#   build.sh CMAKE ARCHIVE SKETCH BOARD RAM
 #
-# for example: build.sh cmake Streaming mega:cpu=atmega2560 8192
+# for example: build.sh cmake tmini-1.0.0-arduino.zip Streaming mega:cpu=atmega2560 8192
 # SKETCH may be a folder that contains a sketch of the same name. Environment variables: FIRMWARE
 # (optional) names the file to which the program is copied; FLAGS are more compiler options.
 # Exit status: 0 if it links, without a warning about our code, and leaves a quarter of the board's
@@ -15,13 +14,12 @@
 
 set -eu
 
-cmake=$1 sketch=$2 board=$3 ram=$4 archive=${5:-}
-root=$(cd "$(dirname "$0")/../../.." && pwd)
+cmake=$1 archive=$2 sketch=$3 board=$4 ram=$5
 hardware=/usr/share/arduino/hardware
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-for needed in arduino-builder arduino-ctags avr-g++ python3; do
+for needed in arduino-builder arduino-ctags avr-g++; do
     if ! command -v "$needed" >/dev/null; then
         echo "skipped: $needed is not installed"
         exit 77
@@ -38,10 +36,6 @@ case $sketch in
 *) folder=$work/libraries/tmini/examples/$sketch ;;
 esac
 sketch=$(basename "$sketch")
-if [ -z "$archive" ]; then
-    python3 -B "$root/.ci/pack.py" --allow-placeholder "$work/release"
-    archive=$(echo "$work"/release/*-arduino.zip)
-fi
 # In the locale C, CMake 3.31 cannot unpack an archive whose path has accents.
 cp "$archive" "$work/library.zip"
 (cd "$work/libraries" && "$cmake" -E tar xf ../library.zip)

@@ -90,8 +90,7 @@ static void empty_fifo(void)
 
 static bool is_up(void)
 {
-    return idf.installed && idf.has_interrupts && machine.now_us >= idf.held_until_us &&
-           (has_cause_to_read() || idf.fifo_overflowed);
+    return idf.installed && idf.has_interrupts && (has_cause_to_read() || idf.fifo_overflowed);
 }
 
 /* ESP-IDF's interrupt handler moves the FIFO's bytes to its buffer. After that it checks for an
@@ -117,11 +116,6 @@ void idf_begin(const sim_observer_t *observer)
     for (int i = 0; i < 64; i++) {
         idf.pins[i].is_gpio = i != IDF_JTAG_PIN;
     }
-}
-
-void idf_hold_interrupts(uint32_t us)
-{
-    idf.held_until_us = machine.now_us + us;
 }
 
 void idf_break_reception(void)

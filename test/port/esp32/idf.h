@@ -52,9 +52,8 @@ typedef struct {
     unsigned stray_calls; /* Calls for a UART without a driver; should be 0. */
     size_t fifo_threshold;
     bool fifo_overflowed;
-    bool is_routed;         /* The receive pin. */
-    bool has_interrupts;    /* The UART; other code could switch them off. */
-    uint64_t held_until_us; /* No interrupt comes before, as during an operation on the flash. */
+    bool is_routed;      /* The receive pin. */
+    bool has_interrupts; /* The UART; other code could switch them off. */
     uint8_t buffer[16384];
     size_t buffer_size;
     size_t buffer_count;
@@ -73,9 +72,6 @@ int idf_pin(int pin);
 
 /* Switches the UART's interrupts off and disconnects its receive pin, as other code could do. */
 void idf_break_reception(void);
-
-/* Delays the UART's interrupt for this long. */
-void idf_hold_interrupts(uint32_t us);
 
 /* Puts an event into the queue. If it is full, the event is lost, as in ESP-IDF. */
 void idf_post(uart_event_type_t type, size_t size);

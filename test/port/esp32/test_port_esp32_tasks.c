@@ -65,7 +65,7 @@ static void enlarge(void)
 
 #define WAY                                                                      \
     .enlarge = enlarge, .holds = 8192, .behind = 128 + 8, .packets_per_loss = 4, \
-    .hold_up = idf_hold_interrupts, .break_reception = idf_break_reception
+    .hold_up = machine_pass_held_up, .break_reception = idf_break_reception
 
 const port_way_t port_ways[] = {
     {.name = "through a task", WAY},

@@ -39,14 +39,7 @@ static void demand(bool condition, const char *what)
 /* The UART interrupts when its FIFO is half full, or after 32 bit times without a byte. */
 static bool line_is_up(void)
 {
-    return world.pending ||
-           (world.interrupt_enabled && machine_must_read(FIFO_SIZE / 2, TIMEOUT_US));
-}
-
-static void serve_line(void)
-{
-    world.pending = false;
-    UART1_Handler();
+    return world.interrupt_enabled && machine_must_read(FIFO_SIZE / 2, TIMEOUT_US);
 }
 
 static void arrive(uint32_t overrun, uint8_t byte)
@@ -83,7 +76,7 @@ void freertos_model_begin(const sim_observer_t *observer, unsigned priority)
     const machine_uart_t uart = {.fifo_size = FIFO_SIZE,
                                  .arrive = arrive,
                                  .is_up = line_is_up,
-                                 .serve = serve_line,
+                                 .serve = UART1_Handler,
                                  .switch_tasks = switch_tasks};
     memset(&world, 0, sizeof world);
     machine_begin(observer, &uart);
@@ -217,17 +210,6 @@ BaseType_t xStreamBufferReset(StreamBufferHandle_t stream)
 {
     stream->count = 0;
     return pdPASS;
-}
-
-/* --------------------------------------------------------------------------------- for the test */
-
-void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count)
-{
-    for (size_t i = 0; i < count; i += FIFO_SIZE / 2) {
-        const size_t part = count - i < FIFO_SIZE / 2 ? count - i : FIFO_SIZE / 2;
-        world.pending = true;
-        machine_receive(overrun && i == 0, &bytes[i], part);
-    }
 }
 
 /* -------------------------------------------------------------------------- the example's board */

@@ -19,7 +19,6 @@
 #include "tasks.h"
 
 typedef struct {
-    bool pending;           /* The test has raised the UART's interrupt. */
     uint64_t skipped_us;    /* By the tick alone: no byte arrived, and no task ran. */
     bool interrupt_enabled; /* Other code could switch it off. */
     bool overrun;           /* The UART reports it with the next interrupt. */
@@ -30,8 +29,5 @@ extern freertos_world_t world;
 
 /* Resets the model, with a lidar at rest that `observer` watches. The caller becomes a task. */
 void freertos_model_begin(const sim_observer_t *observer, unsigned priority);
-
-/* Puts bytes in the UART's FIFO, after an overrun or not. No task runs meanwhile. */
-void freertos_model_receive(bool overrun, const uint8_t *bytes, size_t count);
 
 #endif
