@@ -184,7 +184,8 @@ class Lidar(Program):
         options = list(options)
         options = options if "--tcp" in options else ["--pty", *options]
         options = options if "--log" in options else [*options, "--log", log]
-        super().__init__(clock, [TMINI_SIM, *options], environment)
+        # An input from which nothing comes, and which is never one of its clients.
+        super().__init__(clock, [TMINI_SIM, *options], environment, stdin=subprocess.PIPE)
         self.log_path = Path(log)
         self.wait_until(lambda: "\n" in self.out)
         line = self.out.split("\n")[0]

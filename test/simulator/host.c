@@ -22,14 +22,6 @@
 /* Nothing signals that a client opens the pty, so it is polled at this interval. */
 #define LOOK_MS 10
 
-static void reset(host_t *host, bool (*update)(host_t *host))
-{
-    memset(host, 0, sizeof *host);
-    host->listener = -1;
-    host->fd = -1;
-    host->update = update;
-}
-
 static void forget_client(host_t *host)
 {
     host->connected = false;
@@ -91,13 +83,8 @@ static bool open_master(host_t *host)
 
 bool host_open_pty(host_t *host)
 {
-    reset(host, update_pty);
-    if (open_master(host) && prepare_slave(host->address)) {
-        return true;
-    }
-    fprintf(stderr, "tmini-sim: no pseudo-terminal: %s\n", strerror(errno));
-    host_close(host);
-    return false;
+    *host = (host_t){.update = update_pty, .listener = -1, .fd = -1};
+    return open_master(host) && prepare_slave(host->address);
 }
 
 /* ---- A TCP socket ---- */
@@ -106,14 +93,6 @@ static void set_flag(int fd, int level, int option)
 {
     const int on = 1;
     setsockopt(fd, level, option, &on, sizeof on);
-}
-
-static void close_fd(int *fd)
-{
-    if (*fd >= 0) {
-        (void)close(*fd);
-    }
-    *fd = -1;
 }
 
 static bool waits(const host_t *host)
@@ -132,7 +111,8 @@ static bool has_gone(const host_t *host)
 static bool update_tcp(host_t *host)
 {
     if (host->fd >= 0 && has_gone(host)) {
-        close_fd(&host->fd);
+        (void)close(host->fd);
+        host->fd = -1;
         forget_client(host);
     }
     if (host->fd < 0 && waits(host)) {
@@ -170,27 +150,17 @@ static bool listen_on(host_t *host, uint16_t port)
 
 bool host_open_tcp(host_t *host, uint16_t port)
 {
-    reset(host, update_tcp);
-    if (listen_on(host, port)) {
-        return true;
-    }
-    fprintf(stderr, "tmini-sim: cannot listen on 127.0.0.1:%u: %s\n", (unsigned)port,
-            strerror(errno));
-    host_close(host);
-    return false;
+    *host = (host_t){.update = update_tcp, .listener = -1, .fd = -1};
+    return listen_on(host, port);
 }
 
 /* ---- Bytes ---- */
 
 void host_wait(host_t *host, int timeout_ms)
 {
-    if (host->connected && !host->input_ended) {
-        (void)events_of(host->fd, POLLIN, timeout_ms);
-    } else if (host->listener >= 0) {
-        (void)events_of(host->listener, POLLIN, timeout_ms);
-    } else {
-        poll(NULL, 0, timeout_ms < LOOK_MS ? timeout_ms : LOOK_MS);
-    }
+    const bool is_heard = host->connected && !host->input_ended;
+    const int fd = is_heard ? host->fd : host->listener; /* poll() ignores -1 */
+    (void)events_of(fd, POLLIN, fd >= 0 || timeout_ms < LOOK_MS ? timeout_ms : LOOK_MS);
 }
 
 /* Reads also without a client: one that wrote and closed at once has left bytes. */
@@ -229,10 +199,4 @@ void host_write(host_t *host, const uint8_t *bytes, size_t count)
     if (host->pending_count > 0u) {
         send_pending(host);
     }
-}
-
-void host_close(host_t *host)
-{
-    close_fd(&host->fd);
-    close_fd(&host->listener);
 }

@@ -30,7 +30,7 @@ struct host {
     uint8_t pending[HOST_PENDING];
 };
 
-/* Makes the host ready for clients at `address`. On failure prints a message and returns false. */
+/* Makes the host ready for clients at `address`. False: errno says why not. */
 bool host_open_pty(host_t *host);
 bool host_open_tcp(host_t *host, uint16_t port); /* loopback only; 0: any free port */
 
@@ -42,7 +42,5 @@ size_t host_read(host_t *host, uint8_t *bytes, size_t max);
 
 /* Sends without waiting: now, or later when the client can take it. */
 void host_write(host_t *host, const uint8_t *bytes, size_t count);
-
-void host_close(host_t *host);
 
 #endif

@@ -221,8 +221,17 @@ static bool run(const options_t *options, uint64_t *now_us)
     printf("%s\n", host.address);
     fflush(stdout);
     *now_us = serve(options);
-    host_close(&host);
     return true;
+}
+
+static bool open_host(const options_t *options)
+{
+    if ((!options->pty || host_open_pty(&host)) &&
+        (options->tcp_port < 0 || host_open_tcp(&host, (uint16_t)options->tcp_port))) {
+        return true;
+    }
+    fprintf(stderr, "tmini-sim: cannot serve anybody: %s\n", strerror(errno));
+    return false;
 }
 
 int main(int argc, char **argv)
@@ -238,8 +247,7 @@ int main(int argc, char **argv)
     }
     catch_signals();
     set_up(&options);
-    if ((options.pty && !host_open_pty(&host)) ||
-        (options.tcp_port >= 0 && !host_open_tcp(&host, (uint16_t)options.tcp_port)) ||
+    if (!open_host(&options) ||
         !report_open(&report, options.log_path, options.truth_path, &device, &wire)) {
         return EXIT_FAILURE;
     }
