@@ -18,6 +18,9 @@ static const tale_phrase_t phrases[] = {
     {NULL, NULL},
 };
 
+/* From 11 to 190 degrees, and from 191 to 9: a turn that began with a start packet at 10. */
+#define REST_OF_CIRCLE \
+    "<x:AA5500028105015F2A0D32A00F32A00F <x:AA550002815F8104AA0C32A00F32A00F !NONE "
 #define NO_AGE "age:2147483647 "
 
 static const row_t tales[] IN_FLASH = {
@@ -112,8 +115,11 @@ static const row_t tales[] IN_FLASH = {
     /* ---- How old the newest complete scan is ---- */
     ROW(before_the_first_complete_scan_its_age_is_at_its_maximum,
         "!NONE " NO_AGE "idle ~250 !NONE " NO_AGE "start >0D <600 >60 <scan <S !STARTED " NO_AGE),
-    ROW(the_age_of_a_scan_counts_from_its_end,
-        "scans completed:100 age:100 turns:3:60 age:580 ~20 age:600"),
+    ROW(the_age_of_the_newest_complete_scan_counts_from_its_end,
+        "scans " REST_OF_CIRCLE "~160 <S !SCAN age:0 ~100 age:100 turns:3:60 age:580 ~20 age:600"),
+    /* 22 bytes follow its last one, which take 1 ms. At 0 would mean: never. */
+    ROW(a_scan_that_ends_at_0_counts_as_ended_at_1,
+        "clock:-210 scans " REST_OF_CIRCLE "~160 <S <P !SCAN age:0 ~100 age:99"),
     ROW(a_clock_that_is_set_back_a_little_makes_no_scan_younger,
         "idle completed:50 ~250 !NONE age:300 back:200 age:300 !NONE age:300"),
     ROW(a_clock_may_begin_at_zero, "clock:0 !NONE " NO_AGE "~1 !NONE " NO_AGE "~1 !NONE " NO_AGE),
