@@ -149,18 +149,6 @@ void test_every_ray_has_the_direction_and_the_time_of_its_point(void)
     }
 }
 
-/* The clock may be late at the start of a turn, but not at its end. */
-void test_the_times_of_a_turn_follow_from_its_end_and_its_frequency(void)
-{
-    add_turn(0);
-    for (scan.start_ms = 5000; scan.start_ms >= 4980; scan.start_ms -= 20) {
-        convert();
-        TEST_ASSERT_FLOAT_WITHIN(NEAR, 0.1f, fields.scan_time);
-        TEST_ASSERT_FLOAT_WITHIN(1e-8f, -0.1f / 360.0f, fields.time_increment);
-        TEST_ASSERT_EQUAL_INT32(0, fields.stamp_us);
-    }
-}
-
 /* The last points of a turn may lie beyond its first one, here nearer than those. */
 void test_where_a_turn_overlaps_itself_each_ray_has_its_own_end(void)
 {
@@ -175,10 +163,16 @@ void test_where_a_turn_overlaps_itself_each_ray_has_its_own_end(void)
     }
 }
 
-void test_without_a_frequency_the_times_are_unknown(void)
+/* The clock may be late at the start of a turn, but not at its end. */
+void test_the_times_of_a_turn_follow_from_its_end_and_its_frequency_or_are_unknown(void)
 {
     add_turn(0);
-    convert();
+    for (scan.start_ms = 5000; scan.start_ms >= 4980; scan.start_ms -= 20) {
+        convert();
+        TEST_ASSERT_FLOAT_WITHIN(NEAR, 0.1f, fields.scan_time);
+        TEST_ASSERT_FLOAT_WITHIN(1e-8f, -0.1f / 360.0f, fields.time_increment);
+        TEST_ASSERT_EQUAL_INT32(0, fields.stamp_us);
+    }
     scan.frequency_chz = 0;
     scan.complete = false;
     TEST_ASSERT_TRUE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
@@ -265,10 +259,13 @@ static const struct {
     {200, true, 0.2f}, {8000, false, 8.0f}, {8001, false, NAN}, {8001, true, INFINITY},
 };
 
+/* Of the scan before, nothing remains. */
 void test_what_a_ray_shows_depends_on_the_limits(void)
 {
     config.min_mm = 200;
     config.max_mm = 8000;
+    add_turn(0);
+    convert();
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         config.missing_inf = values[i].missing_inf;
         scan.count = 0;
@@ -277,6 +274,7 @@ void test_what_a_ray_shows_depends_on_the_limits(void)
         convert();
         TEST_ASSERT_EQUAL_FLOAT(values[i].expected, ranges[270]);
         TEST_ASSERT_EQUAL_FLOAT(values[i].missing_inf ? INFINITY : NAN, ranges[271]);
+        TEST_ASSERT_EQUAL_FLOAT(0.0f, intensities[271]);
         TEST_ASSERT_EQUAL_FLOAT(isfinite(values[i].expected) ? 9.0f : 0.0f, intensities[270]);
     }
     TEST_ASSERT_EQUAL_FLOAT(0.2f, fields.range_min);
@@ -294,19 +292,6 @@ void test_too_near_a_point_does_not_hide_another_and_is_never_free(void)
     convert();
     TEST_ASSERT_EQUAL_FLOAT(4.0f, ranges[270]);
     TEST_ASSERT_EQUAL_FLOAT(4.0f, ranges[180]);
-}
-
-void test_nothing_remains_of_the_previous_scan(void)
-{
-    add_turn(0);
-    convert();
-    scan.count = 1;
-    points[0].distance_mm = 0;
-    TEST_ASSERT_TRUE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
-    for (size_t ray = 0; ray < RAYS; ray++) {
-        TEST_ASSERT_TRUE(isnan(ranges[ray]));
-        TEST_ASSERT_EQUAL_FLOAT(0.0f, intensities[ray]);
-    }
 }
 
 void test_masks_count_in_the_messages_degrees_and_are_unknown_never_free(void)
