@@ -87,16 +87,8 @@ void test_it_scans_until_it_is_stopped(void)
     TEST_ASSERT_EQUAL_INT(TMINI_STATE_IDLE, tmini_state(tmini_zephyr_device_lidar(device)));
 }
 
-void test_other_commands_are_given_between_lock_and_unlock(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_request_info(tmini_zephyr_device_lock(device)));
-    tmini_zephyr_device_unlock(device);
-    pass_ms(300);
-    TEST_ASSERT_EQUAL_UINT(1, infos);
-}
-
 /* At rest, nothing but the unlocking wakes the thread. */
-void test_a_command_from_another_thread_wakes_the_sleeping_one(void)
+void test_a_command_between_lock_and_unlock_wakes_the_sleeping_thread(void)
 {
     pass_ms(5000);
     const unsigned before = board.waits;
