@@ -27,7 +27,7 @@ sim_link_kind_t sim_link_kind_named(const char *name)
 
 bool sim_link_counts_bytes(sim_link_kind_t kind)
 {
-    return kind == SIM_LINK_DROP || kind == SIM_LINK_FLIP || kind == SIM_LINK_INSERT;
+    return kind < SIM_LINK_BURST;
 }
 
 sim_link_config_t sim_link_default_config(void)
@@ -48,33 +48,14 @@ sim_link_config_t sim_link_default_config(void)
 
 /* ---- When faults come ---- */
 
-static uint64_t draw_gap(sim_link_t *link, sim_link_kind_t kind)
-{
-    const uint32_t mean = link->config.mean_gap[kind];
-    const uint64_t unit = sim_link_counts_bytes(kind) ? 1u : 1000u;
-    return random_gap(&link->random, mean) * unit;
-}
-
-static void find_nearest_byte(sim_link_t *link)
-{
-    link->nearest_byte = SIM_NEVER;
-    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
-        if (link->next_byte[kind] < link->nearest_byte) {
-            link->nearest_byte = link->next_byte[kind];
-        }
-    }
-}
-
 /* Plans the next fault of this kind. */
 static void schedule(sim_link_t *link, sim_link_kind_t kind, uint64_t from_us)
 {
-    const bool never = link->config.mean_gap[kind] == 0u;
-    if (sim_link_counts_bytes(kind)) {
-        link->next_byte[kind] = never ? SIM_NEVER : link->passed + draw_gap(link, kind);
-        find_nearest_byte(link);
-    } else {
-        link->begin_us[kind] = never ? SIM_NEVER : from_us + draw_gap(link, kind);
-    }
+    const bool in_bytes = sim_link_counts_bytes(kind);
+    const uint32_t mean = link->config.mean_gap[kind];
+    link->next[kind] = mean == 0u ? SIM_NEVER
+                       : in_bytes ? link->passed + random_gap(&link->random, mean)
+                                  : from_us + random_gap(&link->random, mean) * 1000u;
 }
 
 void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config)
@@ -85,35 +66,36 @@ void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config
     link->cut_from = SIZE_MAX;
     random_seed(&link->random, link->config.seed);
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
-        link->next_byte[kind] = SIM_NEVER;
-        link->begin_us[kind] = SIM_NEVER;
         link->end_us[kind] = SIM_NEVER;
-    }
-    for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
         schedule(link, (sim_link_kind_t)kind, 0);
     }
 }
 
 void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer)
 {
-    static const sim_link_observer_t nobody = {0};
-    link->observer = observer == NULL ? nobody : *observer;
+    link->observer = *observer;
 }
 
-static void report_begin(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+static void report(const sim_link_t *link, sim_link_kind_t kind, bool begins, uint64_t at_us)
+{
+    if (link->observer.on_fault != NULL) {
+        link->observer.on_fault(link->observer.context, kind, begins, at_us);
+    }
+}
+
+static void begin(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
     link->counts.faults[kind]++;
-    if (link->observer.on_fault != NULL) {
-        link->observer.on_fault(link->observer.context, kind, true, at_us);
-    }
+    report(link, kind, true, at_us);
+    link->under_way[kind] = true;
 }
 
-static void report_end(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
+static void end(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
+    link->under_way[kind] = false;
+    link->end_us[kind] = SIM_NEVER;
     link->last_fault_us = at_us > link->last_fault_us ? at_us : link->last_fault_us;
-    if (link->observer.on_fault != NULL) {
-        link->observer.on_fault(link->observer.context, kind, false, at_us);
-    }
+    report(link, kind, false, at_us);
 }
 
 /* ---- Processing a packet ---- */
@@ -165,11 +147,11 @@ static uint8_t spoiled(sim_link_t *link, uint8_t byte)
 /* Whether a fault of the kind hits this byte; then reports it, and plans the next one. */
 static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
-    if (link->passed < link->next_byte[kind]) {
+    if (link->passed < link->next[kind]) {
         return false;
     }
-    report_begin(link, kind, at_us);
-    report_end(link, kind, at_us);
+    begin(link, kind, at_us);
+    end(link, kind, at_us);
     schedule(link, kind, at_us);
     return true;
 }
@@ -183,8 +165,8 @@ static void insert_before(sim_link_t *link, uint8_t following)
 
 static void count_burst_down(sim_link_t *link, uint64_t at_us)
 {
-    if (link->burst_left > 0u && --link->burst_left == 0u) {
-        report_end(link, SIM_LINK_BURST, at_us);
+    if (link->under_way[SIM_LINK_BURST] && --link->burst_left == 0u) {
+        end(link, SIM_LINK_BURST, at_us);
     }
 }
 
@@ -207,7 +189,7 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
     if (meets(link, SIM_LINK_FLIP, at_us)) {
         byte = (uint8_t)(byte ^ (1u << random_below(&link->random, 8)));
     }
-    if (link->burst_left > 0u || link->garbling) {
+    if (link->under_way[SIM_LINK_BURST] || link->under_way[SIM_LINK_GARBLE]) {
         byte = spoiled(link, run->bytes[i]);
     }
     if (meets(link, SIM_LINK_DROP, at_us) || place >= link->cut_from ||
@@ -221,10 +203,14 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
     count_burst_down(link, at_us);
 }
 
+/* No fault can hit any of these bytes. */
 static bool is_safe(const sim_link_t *link, const sim_run_t *run)
 {
-    return link->observer.loses == NULL && link->burst_left == 0u && !link->garbling &&
-           link->cut_from == SIZE_MAX && link->passed + run->length <= link->nearest_byte;
+    const uint64_t end = link->passed + run->length;
+    return link->observer.loses == NULL && !link->under_way[SIM_LINK_BURST] &&
+           !link->under_way[SIM_LINK_GARBLE] && link->cut_from == SIZE_MAX &&
+           end <= link->next[SIM_LINK_DROP] && end <= link->next[SIM_LINK_FLIP] &&
+           end <= link->next[SIM_LINK_INSERT];
 }
 
 static void begin_frame(sim_link_t *link, const sim_run_t *run)
@@ -234,8 +220,7 @@ static void begin_frame(sim_link_t *link, const sim_run_t *run)
         return;
     }
     open_packet(link, run->packet);
-    if (link->cut_waiting) {
-        link->cut_waiting = false;
+    if (link->under_way[SIM_LINK_CUT] && link->cut_from == SIZE_MAX) {
         link->cut_from = run->packet_at + (size_t)random_below(&link->random, run->packet->length);
     }
 }
@@ -245,7 +230,7 @@ static void end_frame(sim_link_t *link, const sim_run_t *run)
     close_packet(link, run->completes);
     if (link->cut_from != SIZE_MAX) {
         link->cut_from = SIZE_MAX;
-        report_end(link, SIM_LINK_CUT, sim_byte_us(run->start_us, run->frame_length - 1u));
+        end(link, SIM_LINK_CUT, sim_byte_us(run->start_us, run->frame_length - 1u));
     }
 }
 
@@ -297,78 +282,43 @@ static void begin_stall(sim_link_t *link, uint64_t end_us, uint64_t at_us)
     link->throttled = true;
 }
 
-static void drop_byte_faults_under_way(sim_link_t *link, uint64_t at_us)
-{
-    if (link->burst_left > 0u) {
-        link->burst_left = 0;
-        report_end(link, SIM_LINK_BURST, at_us);
-    }
-    if (link->cut_waiting || link->cut_from != SIZE_MAX) {
-        link->cut_waiting = false;
-        link->cut_from = SIZE_MAX;
-        report_end(link, SIM_LINK_CUT, at_us);
-    }
-}
-
+/* Power is lost, and with it what would have damaged the next bytes. */
 static void unplug(sim_link_t *link, uint64_t at_us)
 {
+    static const sim_link_kind_t moot[] = {SIM_LINK_BURST, SIM_LINK_CUT};
     sim_power(link->sim, false, at_us);
     close_packet(link, false);
-    drop_byte_faults_under_way(link, at_us);
-    link->unplugged = true;
+    for (unsigned i = 0; i < 2; i++) {
+        if (link->under_way[moot[i]]) {
+            end(link, moot[i], at_us);
+        }
+    }
+    link->cut_from = SIZE_MAX;
 }
 
-static void replug(sim_link_t *link, uint64_t at_us)
-{
-    sim_power(link->sim, true, at_us);
-    link->unplugged = false;
-}
-
+/* A burst ends after some bytes, a cut with the next packet. */
 static void begin_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t amount, uint64_t at_us)
 {
     const uint64_t end_us = at_us + amount * 1000u;
-    report_begin(link, kind, at_us);
-    switch (kind) {
-    case SIM_LINK_BURST:
+    begin(link, kind, at_us);
+    if (kind == SIM_LINK_BURST) {
         link->burst_left = (uint32_t)amount;
-        return;
-    case SIM_LINK_CUT:
-        link->cut_waiting = true;
-        return;
-    case SIM_LINK_STALL:
-        begin_stall(link, end_us, at_us);
-        break;
-    case SIM_LINK_GARBLE:
-        link->garbling = true;
-        break;
-    default:
-        unplug(link, at_us);
-        break;
+    } else if (kind != SIM_LINK_CUT) {
+        link->end_us[kind] = end_us;
     }
-    link->end_us[kind] = end_us;
+    if (kind == SIM_LINK_STALL) {
+        begin_stall(link, end_us, at_us);
+    } else if (kind == SIM_LINK_UNPLUG) {
+        unplug(link, at_us);
+    }
 }
 
 static void end_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
-    link->end_us[kind] = SIM_NEVER;
-    if (kind == SIM_LINK_GARBLE) {
-        link->garbling = false;
-    } else if (kind == SIM_LINK_UNPLUG) {
-        replug(link, at_us);
+    if (kind == SIM_LINK_UNPLUG) {
+        sim_power(link->sim, true, at_us);
     }
-    report_end(link, kind, at_us);
-}
-
-static bool is_under_way(const sim_link_t *link, sim_link_kind_t kind)
-{
-    switch (kind) {
-    case SIM_LINK_BURST:
-        return link->burst_left > 0u;
-    case SIM_LINK_CUT:
-        return link->cut_waiting || link->cut_from != SIZE_MAX;
-    default:
-        return link->end_us[kind] != SIM_NEVER;
-    }
+    end(link, kind, at_us);
 }
 
 /* On a silent line a burst or a cut has no bytes to damage; without power no fault has an
@@ -379,13 +329,13 @@ static bool has_an_effect(const sim_link_t *link, sim_link_kind_t kind)
     if (kind == SIM_LINK_BURST || kind == SIM_LINK_CUT) {
         return mode == SIM_SCANNING || mode == SIM_STOPPING;
     }
-    return !link->unplugged;
+    return !link->under_way[SIM_LINK_UNPLUG];
 }
 
 static void fault_is_due(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
     schedule(link, kind, at_us);
-    if (has_an_effect(link, kind) && !is_under_way(link, kind)) {
+    if (has_an_effect(link, kind) && !link->under_way[kind]) {
         begin_fault(link, kind, draw_amount(link, kind), at_us);
     }
 }
@@ -396,7 +346,7 @@ static uint64_t next_event_us(const sim_link_t *link)
 {
     uint64_t next = SIM_NEVER;
     for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
-        next = link->begin_us[kind] < next ? link->begin_us[kind] : next;
+        next = link->next[kind] < next ? link->next[kind] : next;
         next = link->end_us[kind] < next ? link->end_us[kind] : next;
     }
     return next;
@@ -408,7 +358,7 @@ static void happen(sim_link_t *link, uint64_t at_us)
         if (link->end_us[kind] == at_us) {
             end_fault(link, (sim_link_kind_t)kind, at_us);
         }
-        if (link->begin_us[kind] == at_us) {
+        if (link->next[kind] == at_us) {
             fault_is_due(link, (sim_link_kind_t)kind, at_us);
         }
     }
@@ -472,7 +422,7 @@ size_t sim_link_read(sim_link_t *link, uint64_t now_us, uint8_t *out, size_t max
 void sim_link_write(sim_link_t *link, const uint8_t *bytes, size_t count, uint64_t now_us)
 {
     pass_all(link, now_us);
-    if (!link->unplugged) {
+    if (!link->under_way[SIM_LINK_UNPLUG]) {
         sim_receive(link->sim, bytes, count, now_us);
     }
 }
@@ -516,9 +466,8 @@ void sim_link_force(sim_link_t *link, sim_link_kind_t kind, uint32_t amount, uin
 {
     pass_all(link, now_us);
     if (sim_link_counts_bytes(kind)) {
-        link->next_byte[kind] = link->passed;
-        find_nearest_byte(link);
-    } else if (!is_under_way(link, kind)) {
+        link->next[kind] = link->passed;
+    } else if (!link->under_way[kind]) {
         begin_fault(link, kind, amount, now_us);
     }
 }
@@ -526,7 +475,7 @@ void sim_link_force(sim_link_t *link, sim_link_kind_t kind, uint32_t amount, uin
 bool sim_link_is_faulty(const sim_link_t *link)
 {
     for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
-        if (is_under_way(link, (sim_link_kind_t)kind)) {
+        if (link->under_way[kind]) {
             return true;
         }
     }

@@ -77,16 +77,12 @@ typedef struct {
     sim_link_observer_t observer;
     sim_link_counts_t counts;
     random_t random;
-    uint64_t passed;                    /* bytes that came from the device */
-    uint64_t next_byte[SIM_LINK_KINDS]; /* faults of single bytes: where the next one is */
-    uint64_t nearest_byte;              /* the lowest of these */
-    uint64_t begin_us[SIM_LINK_KINDS];  /* other faults: when the next one begins */
-    uint64_t end_us[SIM_LINK_KINDS];    /* and when the present one ends; SIM_NEVER: none now */
+    uint64_t passed;                 /* bytes that came from the device */
+    uint64_t next[SIM_LINK_KINDS];   /* faults of single bytes: where; others: when, in us */
+    uint64_t end_us[SIM_LINK_KINDS]; /* when the present one ends; SIM_NEVER: unknown, or none */
+    bool under_way[SIM_LINK_KINDS];
     uint32_t burst_left;
-    bool cut_waiting; /* until the next packet begins */
-    size_t cut_from;  /* place in the frame; SIZE_MAX: not cutting */
-    bool unplugged;
-    bool garbling;
+    size_t cut_from;     /* place in the frame; SIZE_MAX: not cutting, or until the next packet */
     bool throttled;      /* during a stall and until the backlog has drained */
     uint64_t held_from;  /* first byte held back */
     uint64_t release_us; /* when the stall ends */
@@ -106,7 +102,7 @@ sim_link_config_t sim_link_default_config(void);
 /* The caller owns `sim`, which must outlive the link. `config` is copied; NULL: the default one. */
 void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config);
 
-/* `observer` is copied; NULL: none. */
+/* `observer` is copied. */
 void sim_link_observe(sim_link_t *link, const sim_link_observer_t *observer);
 
 /* Bytes from the host arrive at the device now. Lost while unplugged. */
