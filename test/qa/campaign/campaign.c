@@ -87,24 +87,15 @@ static bed_t bed;
 static bed_held_t held;
 static watch_t watch;
 static holes_t holes;
-static random_t dice;
 static uint8_t rx[65536];
 static tmini_point_t points[POINTS];
 static verdicts_t verdicts;
 
+random_t dice;
+
 static uint32_t below(uint32_t limit)
 {
     return random_below(&dice, limit);
-}
-
-static uint32_t between(uint32_t low, uint32_t high)
-{
-    return random_between(&dice, low, high);
-}
-
-static bool one_in(uint32_t number)
-{
-    return number > 0 && below(number) == 0;
 }
 
 /* ---- Random settings: those of all modes, then those of each mode ---- */

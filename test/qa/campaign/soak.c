@@ -23,22 +23,11 @@ static bed_t bed;
 static watch_t watch;
 static uint8_t rx[8192];
 static tmini_point_t points[4000];
-static random_t dice;
 
 /* What the program did, in all lives. */
 static struct {
     uint32_t lives, lidar_faults, restarts, commands, failures;
 } done;
-
-static uint32_t between(uint32_t low, uint32_t high)
-{
-    return random_between(&dice, low, high);
-}
-
-static bool one_in(uint32_t number)
-{
-    return random_below(&dice, number) == 0;
-}
 
 /* ---- Configuration: each life has another lidar, another line and another program ---- */
 
