@@ -361,10 +361,10 @@ def known_survivors():
                 known.update((f"{path} | {word.replace('.', ' | ')} in {bits} bits", reason)
                              for word in second.split() for bits in re.findall(r"\d+", first))
                 continue
-            code, *changes = place.split(" -> ")
-            known.update((f"{code} -> {change}", reason) for change in changes)
-            if not changes:  # "code removed"
-                known[code] = reason
+            for entry in second.split(" ; "):
+                code, *changes = entry.split(" -> ")
+                keys = [f"{code} -> {change}" for change in changes] or [code]  # "code removed"
+                known.update((f"{path} | {first} | {key}", reason) for key in keys)
     return known
 
 
