@@ -3,14 +3,12 @@
 
 /* A thread acts as the line: each millisecond it passes on the simulated lidar's bytes. */
 
-#include <string.h>
-
 #include <zephyr/device.h>
 #include <zephyr/drivers/serial/uart_emul.h>
 #include <zephyr/kernel.h>
 #include <zephyr/ztest.h>
 
-#include "sim_judge.h"
+#include "judge_scan.h"
 #include "tmini_zephyr_device.h"
 
 #define LINE_STACK 4096
@@ -60,14 +58,7 @@ static struct k_thread line;
 
 static bool is_true(const tmini_scan_t *scan)
 {
-    sim_reading_t reading = {0};
-    for (unsigned i = 0; i < scan->count; i++) {
-        const tmini_point_t *const point = &scan->points[i];
-        sim_read_point(&judge, &reading,
-                       (reference_point_t){point->angle_q6, point->distance_mm, point->intensity,
-                                           point->flag});
-    }
-    (void)sim_read_end(&judge, &reading, scan->complete, scan->gaps, scan->dropped);
+    const sim_reading_t reading = judge_scan(&judge, scan);
     return scan->complete && reading.lies == 0 && reading.missing == 0;
 }
 
