@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* Tests the HAL port on the model of USART, DMA and HAL: byte by byte, and with DMA into the lidar's
- * buffer and by blocks. Compiled for several families and years of the HAL: see
+/* Tests the HAL port on the model of USART, DMA and HAL: byte by byte, and with DMA into the
+ * lidar's buffer and by blocks. Compiled for several families and years of the HAL: see
  * stm32_model/stm32_model.h. */
 
 #include "tmini_stm32_hal.h"
