@@ -72,8 +72,7 @@ void sim_init(sim_t *sim, const sim_config_t *config)
 
 void sim_observe(sim_t *sim, const sim_observer_t *observer)
 {
-    static const sim_observer_t nobody = {NULL, NULL, NULL, NULL, NULL};
-    sim->observer = observer == NULL ? nobody : *observer;
+    sim->observer = *observer;
 }
 
 /* ---- Trouble ---- */
@@ -566,7 +565,13 @@ void sim_power(sim_t *sim, bool on, uint64_t now_us)
 void sim_befall(sim_t *sim, sim_trouble_t trouble, uint32_t for_ms, uint64_t now_us)
 {
     advance(sim, now_us);
-    befall(sim, trouble, for_ms);
+    if (trouble == SIM_LOST) {
+        sim->lose_reply = true;
+    } else if (trouble == SIM_LATE) {
+        sim->extra_latency_ms = for_ms;
+    } else {
+        befall(sim, trouble, for_ms);
+    }
 }
 
 uint64_t sim_sound_us(const sim_t *sim)
@@ -619,16 +624,6 @@ void sim_clear_obstacles(sim_t *sim)
     sim_scene_build(&sim->scene);
 }
 
-void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms)
-{
-    sim->extra_latency_ms = extra_ms;
-}
-
-void sim_lose_next_reply(sim_t *sim)
-{
-    sim->lose_reply = true;
-}
-
 /* ---- Queries ---- */
 
 sim_mode_t sim_mode(const sim_t *sim)
@@ -651,9 +646,4 @@ uint8_t sim_health(const sim_t *sim)
 {
     return (uint8_t)(sim->health | (sim->rotor_blocked ? SIM_HEALTH_ENCODER : 0) |
                      (sim->rotor.data_fault ? SIM_HEALTH_DATA : 0));
-}
-
-uint32_t sim_lost_frames(const sim_t *sim)
-{
-    return sim->line.lost;
 }

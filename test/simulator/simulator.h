@@ -12,7 +12,7 @@
  *
  * Time never runs backwards. Frames are made when the user takes them, and when it sends commands.
  * If it takes nothing for more than about 100 ms of streaming and sends commands, whole frames are
- * lost (sim_lost_frames()).
+ * lost (line.lost).
  */
 
 #ifndef SIMULATOR_H
@@ -147,7 +147,7 @@ typedef struct {
     uint32_t unknown_commands;        /* A5 followed by a code that does not exist: ignored */
     uint32_t commands_while_scanning; /* other than stop: the manual forbids them (section 2) */
     uint32_t commands_in_tail;        /* other than stop, during the stream's tail */
-    uint32_t lost_replies;            /* sim_lose_next_reply(), or too many waiting */
+    uint32_t lost_replies;            /* on purpose, or too many were waiting */
 } sim_counts_t;
 
 /* Functions that an observer provides; any may be NULL. They are called from the functions below
@@ -201,7 +201,7 @@ typedef struct {
     encode_turn_t turn;
 } sim_rotor_t;
 
-/* Everything about one lidar. Caller-owned. Users may read `counts`; the rest is private. */
+/* Everything about one lidar. Caller-owned. Users may read `counts` and `line.lost`; the rest is private. */
 typedef struct {
     sim_config_t config;
     sim_observer_t observer;
@@ -240,7 +240,7 @@ sim_config_t sim_default_config(void);
 /* An idle device at time 0. `config` is copied. */
 void sim_init(sim_t *sim, const sim_config_t *config);
 
-/* `observer` is copied; NULL: none. */
+/* `observer` is copied. */
 void sim_observe(sim_t *sim, const sim_observer_t *observer);
 
 /* Bytes from the host arrive now. */
@@ -267,7 +267,9 @@ void sim_cover_window(sim_t *sim, bool covered);
 void sim_place_obstacle(sim_t *sim, uint16_t angle_q6, uint16_t width_q6, uint16_t distance_mm);
 void sim_clear_obstacles(sim_t *sim);
 
-/* The trouble begins now: SIM_POWER_CUT or one after it. */
+/* The trouble begins now: SIM_POWER_CUT or one after it. SIM_LOST and SIM_LATE befall the reply to
+ * the next command that has one. The stream begins as if the start command's reply was sent when
+ * due, even if that is late or lost. */
 void sim_befall(sim_t *sim, sim_trouble_t trouble, uint32_t ms, uint64_t now_us);
 
 /* When the last trouble ended, or will end, by itself or by a reboot: until then nothing can be
@@ -276,11 +278,6 @@ uint64_t sim_sound_us(const sim_t *sim);
 
 /* Whether an event may come without anything being sent to the lidar. */
 bool sim_expects_event(const sim_t *sim);
-
-/* Delays or loses the reply to the next command that has one. Replies keep their order. The stream
- * begins as if the start command's reply was sent when due, even if that is late or lost. */
-void sim_delay_next_reply(sim_t *sim, uint32_t extra_ms);
-void sim_lose_next_reply(sim_t *sim);
 
 /* A marked lidar's sample: no other one has its values, so that they show which one a point is. */
 encode_sample_t sim_mark(const sim_t *sim, uint32_t revolution, uint32_t sample);
@@ -295,6 +292,5 @@ sim_mode_t sim_mode(const sim_t *sim);
 const char *sim_mode_name(sim_mode_t mode);
 uint16_t sim_frequency_chz(const sim_t *sim); /* set, not measured */
 uint8_t sim_health(const sim_t *sim);         /* as the health command reports it */
-uint32_t sim_lost_frames(const sim_t *sim);
 
 #endif

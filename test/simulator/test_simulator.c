@@ -104,7 +104,7 @@ static void run_until(uint64_t us)
     const size_t more = sim_link_read(&wire, us, stream + size, STREAM_MAX - size);
     const bool is_slow = more <= (us - now) * 72u / 3125u + 1u;
     TEST_ASSERT_TRUE(is_slow || heard.begun[SIM_LINK_INSERT] > 0);
-    TEST_ASSERT_EQUAL_UINT32(0, sim_lost_frames(&sim));
+    TEST_ASSERT_EQUAL_UINT32(0, sim.line.lost);
     now = us;
     size += more;
 }
@@ -325,7 +325,7 @@ static bool is_fact(const char *word)
         {"sleeps", sim_next_us(&sim) == SIM_NEVER},
         {"faults", sim_health(&sim)},
         {"next", (uint32_t)sim_link_next_us(&wire)},
-        {"lost_frames", sim_lost_frames(&sim)},
+        {"lost_frames", sim.line.lost},
         {"commands", sim.counts.commands},
         {"unknown", sim.counts.unknown_commands},
         {"forbidden", sim.counts.commands_while_scanning},
@@ -617,8 +617,6 @@ static void tell(char *word)
         marked = size;
     } else if (row_is(word, "by")) {
         transmit_by(number);
-    } else if (row_is(word, "lose")) {
-        sim_lose_next_reply(&sim);
     } else if (row_is(word, "clear")) {
         sim_clear_obstacles(&sim);
     } else if (row_is(word, "got")) {
@@ -629,8 +627,6 @@ static void tell(char *word)
         scan_seconds(number);
     } else if (row_is(word, "untaken")) {
         sim_receive(&sim, (const uint8_t[]){0xA5, 0x65}, 2, now + number * 1000u);
-    } else if (row_is(word, "delay")) {
-        sim_delay_next_reply(&sim, number);
     } else if (row_is(word, "sick")) {
         sim_set_health(&sim, (uint8_t)number);
     } else if (row_is(word, "block")) {
@@ -668,12 +664,12 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_reply_comes_after_the_latency_at_the_lines_speed,
         "latency:20 >92 us:20043 bytes:0 us:20044 bytes:1 us:20434 bytes:9 us:20435 bytes:10"),
     ROW(one_reply_can_be_delayed_and_the_next_one_waits_for_it,
-        "delay:3000 >92 +1000 >0D +1990 bytes:0 +20 bytes:21 =A55A0300000006000000 "
+        "befalls:late3000 >92 +1000 >0D +1990 bytes:0 +20 bytes:21 =A55A0300000006000000 "
         "=A55A0400000004 forget >0D got:600"),
     ROW(a_stream_waits_for_its_own_late_reply,
-        "delay:3000 >92 +1000 >60 +2200 bytes:17 =A55A0300000006000000 =A55A0500004081 +1000 "
+        "befalls:late3000 >92 +1000 >60 +2200 bytes:17 =A55A0300000006000000 =A55A0500004081 +1000 "
         "packets>50"),
-    ROW(one_reply_can_be_lost, "lose >0D +100 bytes:0 >0D got:600"),
+    ROW(one_reply_can_be_lost, "befalls:lost >0D +100 bytes:0 >0D got:600"),
     ROW(a_lidar_that_never_answers_obeys,
         "never_answers:1 >0B +100 bytes:0 hz:700 scan:1 packets>90"),
     ROW(the_ct_bytes_carry_what_section_7_says,
@@ -703,7 +699,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(commands_while_scanning_are_counted_and_answered_between_packets,
         "scan:1 forget >0D >60 +1000 forbidden:2 checksum_errors:0 stray>18 stray<278 >65 "
         "forbidden:2 >0D forbidden:2 in_tail:1"),
-    ROW(a_lost_start_reply_does_not_stop_the_stream, "lose >60 +2000 replies:0 packets>100"),
+    ROW(a_lost_start_reply_does_not_stop_the_stream,
+        "befalls:lost >60 +2000 replies:0 packets>100"),
     ROW(nothing_is_answered_during_a_reboot_and_the_frequency_is_reset,
         ">0B +10 >40 @booting forget +2490 >0D +100 bytes:0 @idle >0D got:600"),
     ROW(a_reboot_forgets_a_reply_that_is_due, ">90 >40 +5000 bytes:0"),

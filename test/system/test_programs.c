@@ -346,7 +346,7 @@ static bool befall(const char *word, uint32_t number)
         sim_link_set_mean_gap(&watch.link, kind, number, bed.now_us);
         return true;
     }
-    if (trouble == SIM_DEAF || trouble >= SIM_NO_STARTS) {
+    if (trouble != SIM_SOUND) {
         sim_befall(&bed.sim, trouble, number, bed.now_us);
         return true;
     }
@@ -358,10 +358,6 @@ static bool befall(const char *word, uint32_t number)
         sim_block_rotor(&bed.sim, number != 0);
     } else if (strcmp(word, "covered") == 0) {
         sim_cover_window(&bed.sim, number != 0);
-    } else if (strcmp(word, "lose-reply") == 0) {
-        sim_lose_next_reply(&bed.sim);
-    } else if (strcmp(word, "late-reply") == 0) {
-        sim_delay_next_reply(&bed.sim, number);
     } else if (strcmp(word, "others-start") == 0) {
         let_others_start();
     } else {
@@ -587,7 +583,7 @@ static const row_t rows[] IN_FLASH = {
         "ring:4096 tail:300 may-lose:1 begin start run:4000 restart pause:799 mark stop polls:60 "
         "run:300 any-event:0 run:600 any-event:1 stopped:1 lidar-idle:1"),
     ROW(a_late_reply_to_one_query_is_not_taken_as_the_reply_to_another,
-        "late-reply:2500 ask-frequency run:2000 stop run:1000 command-failed:1 stopped:1 ask "
+        "late:2500 ask-frequency run:2000 stop run:1000 command-failed:1 stopped:1 ask "
         "run:3000 model:151"),
     ROW(set_10_hz_and_start_scans_at_10_hz, "set:1000 start run:5000 scans:1000 command-failed:0"),
     ROW(start_and_set_10_hz_scans_at_10_hz, "start set:1000 run:5000 scans:1000"),
@@ -597,7 +593,7 @@ static const row_t rows[] IN_FLASH = {
         "start run:4000 set:1200 set:1200 run:5000 scans:1200 frequency:1 started:2"),
     ROW(a_frequency_wanted_during_a_query_is_set_by_the_next_start,
         "ask set:800 start run:6000 scans:800 information:1"),
-    ROW(a_start_follows_a_query_however_it_ends, "lose-reply ask start run:9000 scans:600"),
+    ROW(a_start_follows_a_query_however_it_ends, "lost ask start run:9000 scans:600"),
     ROW(a_supply_that_fails_for_300_ms_leaves_10_hz_and_complete_scans,
         "wants:1000 points:450 begin start run:5000 power:0 run:300 power:1 run:20000 scans:1000 "
         "lost:1 recovered:1"),
@@ -622,7 +618,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(without_recovery_a_loss_is_only_reported,
         "recovery-off:1 begin start run:4000 power:0 run:2000 power:1 run:30000 lost:1 "
         "in-recovering lidar-idle:1 stop run:1000 stopped:1 start run:5000 scans:600"),
-    ROW(a_lost_answer_is_asked_for_again, "lose-reply ask run:3000 information:1 command-failed:0"),
+    ROW(a_lost_answer_is_asked_for_again, "lost ask run:3000 information:1 command-failed:0"),
     ROW(a_lidar_that_streams_already_is_stopped,
         "others-start run:3000 stop run:1000 stopped:1 lidar-idle:1 in-idle"),
     /* It fails after 3, 3.5, 4.5, 6.5, 8.5 s. */
@@ -740,7 +736,7 @@ void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
         while (bed.sim.counts.replies < i % 6) {
             bed_step(&bed);
         }
-        sim_delay_next_reply(&bed.sim, delays_ms[i / 6]);
+        sim_befall(&bed.sim, SIM_LATE, delays_ms[i / 6], bed.now_us);
         (void)bed_run_until(&bed, BIT(TMINI_EVENT_FREQUENCY), 8000);
         row_tell("frequency:1 lidar-at:820 command-failed:0", tell);
         expect_good_behaviour(i);
@@ -755,11 +751,11 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
     for (uint32_t late_ms = 0; late_ms < 200; late_ms += 9) {
         prepare(0);
         begin();
-        sim_delay_next_reply(&bed.sim, 50 + late_ms);
+        sim_befall(&bed.sim, SIM_LATE, 50 + late_ms, bed.now_us);
         sim_receive(&bed.sim, command, 2, bed.now_us);
         row_tell("ask-frequency run:5000 frequency:1 ask run:5000 information:1 model:151", tell);
         expect(tmini_frequency_chz(&bed.lidar) == 600, "another frequency");
-        sim_delay_next_reply(&bed.sim, late_ms);
+        sim_befall(&bed.sim, SIM_LATE, late_ms, bed.now_us);
         sim_receive(&bed.sim, command, 2, bed.now_us);
         row_tell("start run:5000 in-scanning command-failed:0", tell);
         expect_good_behaviour(late_ms);
