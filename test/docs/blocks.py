@@ -6,9 +6,8 @@ command and option there.
 
     blocks.py BUILD COMPILER [C++-COMPILER]
 
-BUILD is the folder of a complete build. Exit status: 0 no mistake, 1 mistakes. Prints every mistake, and every
-block that could not be checked with the reason.
-"""
+BUILD is the folder of a complete build. Prints every mistake, and every block that could not be checked with the
+reason."""
 
 import os
 import re
@@ -18,12 +17,7 @@ import sys
 from pathlib import Path
 
 import tools
-from documents import ROOT, documents, indented_blocks, name, parse
-
-# Languages of blocks that are never checked.
-UNCHECKED = {
-    "text": "what a program prints, a drawing or a formula: nothing to compile",
-}
+from documents import HEADING, ROOT, documents, name, parse, report
 
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Wno-unused-parameter"]
 C = ["-std=c99", "-Ilib/include"]
@@ -34,47 +28,39 @@ BOTH = ("README.md",)
 AS_CXX = ["-std=gnu++11", "-Wno-missing-field-initializers", "-x", "c++"]
 
 
-def stand_ins(*folders):
-    """Options for the tests' stand-ins for platforms, without warnings from their headers."""
-    return [word for folder in folders for word in ("-isystem", folder)]
+def uses(header, *folders):
+    """Options for the prelude of this name and for the tests' stand-ins, without warnings from their headers."""
+    return ["-Itest/docs/prelude", "-include", f"test/docs/prelude/{header}.h",
+            *(word for folder in folders for word in ("-isystem", f"test/{folder}"))]
 
 
-def prelude(header):
-    return ["-Itest/docs/prelude", "-include", f"test/docs/prelude/{header}.h"]
-
-
-HAL = ["-Iport/stm32", *stand_ins("test/port/stm32/stm32_model", "test/support"), "-DSTM32_MODEL_SR",
-       "-DSTM32_MODEL_STREAMS", "-DSTM32_MODEL_YEAR=2024"]
-KERNEL = ["-Iport/freertos", *stand_ins("test/port/freertos/kernel_stub")]
-STM32 = [*C, *HAL, *KERNEL, *prelude("stm32"), "-Wno-pointer-to-int-cast"]
-ESP_IDF = [*C, "-Iport/esp32", *stand_ins("test/port/esp32/esp_idf"), *prelude("board")]
-ARDUINO = [*CXX, "-Iport/arduino", *stand_ins("test/port/arduino/arduino_stub"),
-           "-DARDUINO=10819", "-DESP32", "-DESP_ARDUINO_VERSION_MAJOR=3"]
-FREERTOS = [*C, *KERNEL, *prelude("board")]
-ZEPHYR = [*C, "-Iport/zephyr", *stand_ins("test/port/zephyr/zephyr_stub"), *prelude("board")]
-PICO = [*C, "-std=gnu99", "-Iport/pico", *stand_ins("test/port/pico/sdk_stub"), *prelude("board")]
-MICRO_ROS = [*C, "-Iexamples/micro_ros", "-Iport/ros2/src", *stand_ins("test/port/micro_ros/micro_ros_stub")]
-BOARD = [*C, *prelude("board")]
+BOARD = [*C, *uses("board")]
+HAL = [*C, "-Iport/stm32", "-DSTM32_MODEL_SR", "-DSTM32_MODEL_STREAMS", "-DSTM32_MODEL_YEAR=2024"]
+MODEL = ("port/stm32/stm32_model", "support")
+STM32 = [*HAL, "-Iport/freertos", *uses("stm32", *MODEL, "port/freertos/kernel_stub"), "-Wno-pointer-to-int-cast"]
+ARDUINO = [*CXX, "-Iport/arduino", "-isystem", "test/port/arduino/arduino_stub", "-DARDUINO=10819", "-DESP32",
+           "-DESP_ARDUINO_VERSION_MAJOR=3"]
 
 # Compiler options for each document, or for one of its sections; BOARD for all others.
 CONTEXTS = {
     "README.md#On Arduino": ARDUINO,
     "examples/mavlink/README.md": [*BOARD, "-Iexamples/mavlink", "-DUSART2=USART1"],
-    "examples/micro_ros/README.md": [*MICRO_ROS, *prelude("micro_ros")],
-    "examples/stm32_cube/README.md": [*C, *HAL, *prelude("cube")],
-    "port/README.md": [*C, "-Iport/template", *prelude("template")],
+    "examples/micro_ros/README.md": [*C, "-Iexamples/micro_ros", "-Iport/ros2/src",
+                                     *uses("micro_ros", "port/micro_ros/micro_ros_stub")],
+    "examples/stm32_cube/README.md": [*HAL, *uses("cube", *MODEL)],
+    "port/README.md": [*C, "-Iport/template", *uses("template")],
     "port/arduino/README.md": ARDUINO,
-    "port/esp32/README.md": ESP_IDF,
-    "port/freertos/README.md": FREERTOS,
-    "port/pico/README.md": PICO,
+    "port/esp32/README.md": [*C, "-Iport/esp32", *uses("board", "port/esp32/esp_idf")],
+    "port/freertos/README.md": [*C, "-Iport/freertos", *uses("board", "port/freertos/kernel_stub")],
+    "port/pico/README.md": [*C, "-std=gnu99", "-Iport/pico", *uses("board", "port/pico/sdk_stub")],
     "port/stm32/README.md": STM32,
     "port/stm32/README.md#With registers or LL": [*STM32, "-DREGISTERS"],
     "port/stm32/README.md#By DMA": [*STM32, "-DREGISTERS", "-DBY_DMA"],
     "port/stm32/README.md#Where the buffer may lie": [*STM32, "-DH7"],
     "port/stm32/README.md#Two lidars": [*STM32, "-DTWO_LIDARS"],
     "port/stm32/README.md#With an RTOS": [*STM32, "-DRTOS"],
-    "port/zephyr/README.md": ZEPHYR,
-    "test/simulator/README.md": [*C, "-Itest/simulator", "-Itest/support", *prelude("a_test")],
+    "port/zephyr/README.md": [*C, "-Iport/zephyr", *uses("board", "port/zephyr/zephyr_stub")],
+    "test/simulator/README.md": [*C, "-Itest/simulator", "-Itest/support", *uses("a_test")],
 }
 
 # Zephyr's own settings. All others must be in a Kconfig file of this project.
@@ -93,18 +79,13 @@ class Missing(Exception):
 
 
 def run(*command, **options):
-    result = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            check=False, **options)
+    try:
+        result = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False,
+                                **options)
+    except FileNotFoundError as error:
+        raise Missing(f"{command[0]} is not installed") from error
     if result.returncode != 0:
         raise Failed(result.stdout.strip())
-    return result.stdout
-
-
-def need(program):
-    found = shutil.which(program)
-    if not found:
-        raise Missing(f"{program} is not installed")
-    return found
 
 
 # ---------------------------------------------------------------------------------- C and C++
@@ -230,7 +211,7 @@ def check_cmake(block, place):
 def check_sh(block, _place):
     run("sh", "-n", input=block.text)
     # SC2034: variables may be used by the commands that follow. SC2164: the reader's folders exist.
-    run(need("shellcheck"), "-s", "sh", "-e", "SC2034,SC2164", "-", input=block.text)
+    run("shellcheck", "-s", "sh", "-e", "SC2034,SC2164", "-", input=block.text)
     for option in re.findall(r"-D([A-Z_]+)=", block.text):
         if option.startswith(("CMAKE_", "PICO_")):
             continue
@@ -242,7 +223,7 @@ def check_sh(block, _place):
 
 def check_yaml(block, _place):
     # Python's standard library has no YAML parser, but Ruby's has one.
-    run(need("ruby"), "-ryaml", "-e", "YAML.load($stdin.read)", input=block.text)
+    run("ruby", "-ryaml", "-e", "YAML.load($stdin.read)", input=block.text)
 
 
 def check_conf(block, _place):
@@ -263,22 +244,30 @@ def check_dts(block, _place):
         if not (ROOT / f"port/zephyr/dts/bindings/sensor/{named}.yaml").exists():
             raise Failed(f"there is no binding for {named}")
     board = "/dts-v1/;\n/ { uart0: uart-0 {}; uart1: uart-1 {}; };\n"
-    run(need("dtc"), "-q", "-o", os.devnull, "-", input=board + block.text)
+    run("dtc", "-q", "-o", os.devnull, "-", input=board + block.text)
 
 
 def check_ld(block, place):
     script = place.folder / f"{block.number}.ld"
     script.write_text("MEMORY { RAM_D2 : ORIGIN = 0x30000000, LENGTH = 288K }\n"
                       "SECTIONS {\n" + block.text + "}\n")
-    run(need("ld"), "-r", "-T", script, "-o", os.devnull, "-b", "binary", script)
+    run("ld", "-r", "-T", script, "-o", os.devnull, "-b", "binary", script)
 
 
 def check_python(block, _place):
     compile(block.text, str(block), "exec")
 
 
-CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "yaml": check_yaml,
-          "conf": check_conf, "dts": check_dts, "ld": check_ld, "python": check_python}
+def check_text(_block, _place):
+    raise Missing("what a program prints, a drawing or a formula: nothing to compile")
+
+
+def check_unknown(block, _place):
+    raise Failed(f"no check for the language \"{block.language}\"")
+
+
+CHECKS = {"c": check_c, "cpp": check_cxx, "cmake": check_cmake, "sh": check_sh, "yaml": check_yaml, "conf": check_conf,
+          "dts": check_dts, "ld": check_ld, "python": check_python, "text": check_text}
 
 
 class Place:
@@ -292,43 +281,25 @@ class Place:
         shutil.rmtree(self.folder / "installed", ignore_errors=True)
 
 
-def check(block, place):
-    """Returns (mistake, reason): the block's mistake, or the reason why it is not checked; else None."""
-    if block.language in UNCHECKED:
-        return None, UNCHECKED[block.language]
-    if block.language not in CHECKS:
-        return f"{block}: no check for the language \"{block.language}\"", None
-    try:
-        CHECKS[block.language](block, place)
-    except (Failed, SyntaxError) as failure:
-        return f"{block}: {failure}", None
-    except Missing as reason:
-        return None, str(reason)
-    return None, None
-
-
 def main():
     place = Place(sys.argv[1], sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None)
-    complaints, unchecked, checked = [], {}, 0
+    complaints, unchecked, checked = tools.check(place.build), {}, 0
     for path in documents():
         blocks, prose = parse(path)
         complaints += [f"{name(path)}:{number}: code without a fence and a language"
-                       for number in indented_blocks(prose)]
+                       for (_, before), (number, line) in zip(prose, prose[1:])
+                       if re.match(r" {4,}\S", line) and (not before.strip() or HEADING.match(before))]
         for block in blocks:
-            wrong, reason = check(block, place)
-            if wrong:
-                complaints.append(wrong)
-            elif reason:
-                unchecked.setdefault(reason, []).append(str(block))
-            else:
+            try:
+                CHECKS.get(block.language, check_unknown)(block, place)
                 checked += 1
-    complaints += tools.check(place.build)
+            except (Failed, SyntaxError) as wrong:
+                complaints.append(f"{block}: {wrong}")
+            except Missing as reason:
+                unchecked.setdefault(str(reason), []).append(str(block))
     for reason, places in unchecked.items():
         print(f"not checked, {reason}: {', '.join(places)}")
-    if checked < 40:
-        complaints.append(f"only {checked} blocks have been found: is this check still one?")
-    print("\n".join(complaints) or f"all of {checked} blocks are in order")
-    sys.exit(1 if complaints else 0)
+    report(complaints, checked, 40, "blocks")
 
 
 main()

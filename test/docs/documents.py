@@ -4,11 +4,13 @@
 """Finds and parses the project's documents, for the checks in this folder."""
 
 import re
+import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-FENCE = re.compile(r"^( *)(`{3,}|~{3,}) *([^`]*)$")
+BLOCK = re.compile(r"^( *)(`{3,}|~{3,}) *([^`\n]*)\n(.*?)(?:^ *\2[`~]* *$|(\Z))", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#+ +(.*?) *#*$")
 LINK = re.compile(r"\]\(([^()\s]*)(?:\s+\"[^\"]*\")?\)|^\[[^]]+\]:\s*(\S+)|\b(?:src|href)=\"([^\"]*)\"")
 
@@ -24,55 +26,30 @@ def name(path):
     return path.relative_to(ROOT).as_posix()
 
 
+@dataclass
 class Block:
-    """A block of code: its language (or ""), its section in the document, the number of its first line,
-    and its text."""
-
-    def __init__(self, path, section, number, language, lines):
-        self.path, self.section, self.number, self.language = path, section, number, language
-        self.text = "\n".join(lines) + "\n"
+    """A block of code, with the number of its first line."""
+    path: Path
+    section: str
+    number: int
+    language: str
+    text: str
 
     def __str__(self):
         return f"{name(self.path)}:{self.number}"
 
 
 def parse(path):
-    """A document's blocks of code, and its other lines as (number, line)."""
-    blocks, prose = [], []
-    section, opened = "", None
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        fence = FENCE.match(line)
-        if opened is None:
-            if fence:
-                opened, lines, first = fence, [], number + 1
-                continue
-            heading = HEADING.match(line)
-            section = heading[1] if heading else section
-            prose.append((number, line))
-        elif fence and fence[2].startswith(opened[2]) and not fence[3]:
-            blocks.append(Block(path, section, first, opened[3].strip(), lines))
-            opened = None
-        else:
-            indent = len(opened[1])
-            lines.append(line[indent:] if not line[:indent].strip() else line)
-    if opened is not None:
-        blocks.append(Block(path, section, first, "unclosed", lines))
+    """A document's blocks of code, and its lines as (number, line), where those of blocks are empty."""
+    blocks, text = [], path.read_text(encoding="utf-8")
+    prose = list(enumerate(BLOCK.sub(lambda match: "\n" * match[0].count("\n"), text).splitlines(), 1))
+    for match in BLOCK.finditer(text):
+        before = text.count("\n", 0, match.start(4))
+        headings = [heading[1] for _, line in prose[:before] if (heading := HEADING.match(line))]
+        language = "unclosed" if match[5] is not None else match[3].strip()
+        code = re.sub(f"^ {{0,{len(match[1])}}}", "", match[4], flags=re.MULTILINE)
+        blocks.append(Block(path, headings[-1] if headings else "", before + 1, language, code))
     return blocks, prose
-
-
-def indented_blocks(prose):
-    """The numbers of lines that begin an indented block of code."""
-    found, before, in_list = [], "", False
-    for number, line in prose:
-        if re.match(r" {0,3}([-*+]|\d+\.) ", line):
-            in_list = True
-        elif line.strip() and not line.startswith(" "):
-            in_list = False
-        follows = not before.strip() or HEADING.match(before)
-        if line.startswith("    ") and line.strip() and follows and not in_list:
-            found.append(number)
-        before = line
-    return found
 
 
 def anchors(path):
@@ -106,3 +83,11 @@ def wrong_link(path, target, root=ROOT):
     if root not in goal.parents and goal != root:
         return "leads out of the project"
     return "no such heading" if anchor and (goal.suffix != ".md" or anchor not in anchors(goal)) else None
+
+
+def report(complaints, count, least, what):
+    """Ends a check of `count` things: it fails with complaints, or if there were fewer things than it has to find."""
+    if count < least:
+        complaints.append(f"only {count} {what} have been found: is this check still one?")
+    print("\n".join(complaints) or f"{count} {what}: all in order")
+    sys.exit(1 if complaints else 0)

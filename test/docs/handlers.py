@@ -5,8 +5,6 @@
 and DR (only reading SR and then DR clears the overrun), or with ISR, RDR and ICR (only writing to ICR does).
 
     handlers.py BUILD C++-COMPILER
-
-Exit status: 0 all survive, 1 not.
 """
 
 import re
@@ -14,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from documents import documents, parse
+from documents import documents, parse, report
 
 HANDLER = re.compile(r"^void USART1_IRQHandler\(void\).*?^}\n", re.MULTILINE | re.DOTALL)
 
@@ -131,22 +129,11 @@ def survives(handler, folder, compiler):
     return result.stdout if result.returncode != 0 else None
 
 
-def main():
-    folder = Path(sys.argv[1]) / "test" / "docs" / "handlers"
-    folder.mkdir(parents=True, exist_ok=True)
-    for data in ("DR", "RDR"):
-        naive = f"tmini_feed_byte(&lidar, (uint8_t)USART1->{data});"
-        if survives(f"void USART1_IRQHandler(void) {{ {naive} }}\n", folder, sys.argv[2]) is None:
-            sys.exit(f"a handler that reads {data} alone seems to survive: is this check still one?")
-    failed, count = False, 0
-    for block, handler in handlers():
-        count += 1
-        wrong = survives(handler, folder, sys.argv[2])
-        if wrong:
-            failed = True
-            print(f"{block}: {wrong.strip()}")
-    print(f"{count} handlers tried")
-    sys.exit(1 if failed or count < 3 else 0)
-
-
-main()
+folder = Path(sys.argv[1]) / "test" / "docs" / "handlers"
+folder.mkdir(parents=True, exist_ok=True)
+for data in ("DR", "RDR"):
+    naive = f"tmini_feed_byte(&lidar, (uint8_t)USART1->{data});"
+    if survives(f"void USART1_IRQHandler(void) {{ {naive} }}\n", folder, sys.argv[2]) is None:
+        sys.exit(f"a handler that reads {data} alone seems to survive: is this check still one?")
+tried = [(block, survives(handler, folder, sys.argv[2])) for block, handler in handlers()]
+report([f"{block}: {wrong.strip()}" for block, wrong in tried if wrong is not None], len(tried), 3, "handlers")

@@ -2,12 +2,8 @@
 # Copyright (c) 2026 The tmini authors
 
 """Checks the spelling: of the documents and of the public headers' comments by hunspell (British English and the
-words in words.txt), and of all sources by codespell, which finds common misspellings.
-
-    spelling.py
-
-Exit status: 0 no mistake, 1 mistakes (every word is printed with its places), 77 no tool is installed.
-"""
+words in words.txt), and of all sources by codespell, which finds common misspellings. Exit status 77: neither is
+installed."""
 
 import os
 import re
@@ -84,23 +80,17 @@ def check_sources():
     return result.stdout.splitlines()
 
 
-def has_dictionary():
-    return shutil.which("hunspell") and subprocess.run(
-        ["hunspell", "-l", "-d", "en_GB"], input="", text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, check=False).returncode == 0
-
-
 def main():
-    complaints, tools = [], 0
-    for check, is_there, tool in ((check_documents, has_dictionary(), "hunspell with en_GB"),
-                                  (check_sources, shutil.which("codespell"), "codespell")):
+    complaints, words = [], shutil.which("hunspell") and subprocess.run(
+        ["hunspell", "-l", "-d", "en_GB"], input=b"", capture_output=True, check=False).returncode == 0
+    checks = {check_documents: words, check_sources: shutil.which("codespell")}
+    for check, is_there in checks.items():
         if is_there:
-            tools += 1
             complaints += check()
         else:
-            print(f"not installed, done without: {tool}")
+            print(f"not done, for its tool is not installed: {check.__name__}")
     print("\n".join(complaints) or "no misspelt words")
-    sys.exit(77 if not tools else 1 if complaints else 0)
+    sys.exit(1 if complaints else 0 if any(checks.values()) else 77)
 
 
 main()

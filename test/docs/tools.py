@@ -6,7 +6,7 @@
 import re
 import subprocess
 
-from documents import documents, name
+from documents import documents, name, parse
 
 USE = re.compile(r"(?<![\w/.-])(?:build(?:-demo)?/bin/)?(tmini-sim|tmini) +([^`|;&#\n]*)")
 
@@ -20,51 +20,36 @@ def help_of(build, *words):
     return result.stdout
 
 
-def commands(text):
-    return set(re.findall(r"^  tmini (\w+) ", text, re.MULTILINE))
-
-
-def options(text):
-    return set(re.findall(r"(?<![\w-])(--[a-z][a-z-]*|-[a-zA-Z])\b", text))
-
-
 def spans(path):
-    """Everything in a document that the user may type: spans of code and lines of blocks."""
-    fenced = False
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        if line.lstrip().startswith("```"):
-            fenced = line.strip() == "```sh"
-        elif fenced:
-            yield number, line.split(" #")[0]
-        else:
-            for span in re.findall(r"`([^`]+)`", line):
-                if USE.match(span):
-                    yield number, span
+    """Everything in a document that the user may type: lines of blocks and spans of code."""
+    blocks, prose = parse(path)
+    for block in blocks:
+        if block.language == "sh":
+            yield from ((number, line.split(" #")[0]) for number, line in enumerate(block.text.splitlines(), block.number))
+    for number, line in prose:
+        yield from ((number, span) for span in re.findall(r"`([^`]+)`", line) if USE.match(span))
 
 
 def unknown_options(text, words):
     """The options in `words` that the help does not list. Short options may be joined: -n3, -qn1."""
-    known = options(text)
+    known = set(re.findall(r"(?<![\w-])(--[a-z][a-z-]*|-[a-zA-Z])\b", text))
     return [word for word in (word.split("=")[0].strip("[]") for word in words)
             if re.match(r"--?[a-zA-Z]", word) and word not in known
             and not (re.match(r"-[a-zA-Z]", word) and word[:2] in known)]
 
 
 def check_use(helps, program, words):
-    if program == "tmini":
-        if not words or words[0].startswith("-") or words[0] in PLACEHOLDERS:
-            return unknown_options(helps["tmini"] + " --version", words)
-        command = words[0]
-        if command not in commands(helps["tmini"]):
-            return [command]
-        return unknown_options(helps[command], words[1:])
-    return unknown_options(helps["tmini-sim"], words)
+    command = words[0] if words else ""
+    if program != "tmini" or not command or command.startswith("-") or command in PLACEHOLDERS:
+        return unknown_options(helps[program] + " --version" * (program == "tmini"), words)
+    return unknown_options(helps[command], words[1:]) if command in helps else [command]
 
 
 def check(build):
     """Returns complaints about commands and options that the programs in `build` do not know."""
     helps = {"tmini": help_of(build, "tmini"), "tmini-sim": help_of(build, "tmini-sim")}
-    helps |= {command: help_of(build, "tmini", command) for command in commands(helps["tmini"])}
+    helps |= {command: help_of(build, "tmini", command)
+              for command in re.findall(r"^  tmini (\w+) ", helps["tmini"], re.MULTILINE)}
     complaints, uses = [], 0
     for path in documents():
         for number, span in spans(path):

@@ -2,19 +2,12 @@
 # Copyright (c) 2026 The tmini authors
 
 """Checks that each section of README.zh-CN.md has the same blocks of code, figures, links and names as in
-README.md.
-
-    translation.py             prints the differences
-    translation.py --write     copies README.md's blocks of code first
-
-Exit status: 0 no difference, 1 differences.
-"""
+README.md."""
 
 import re
-import sys
 from itertools import zip_longest
 
-from documents import HEADING, ROOT, parse
+from documents import HEADING, ROOT, parse, report
 
 ENGLISH, CHINESE = ROOT / "README.md", ROOT / "README.zh-CN.md"
 THE_OTHER = ("README.md", "README.zh-CN.md")
@@ -41,19 +34,11 @@ def facts(text):
             "names": sorted(set(names))}
 
 
-def write():
-    """Replaces the Chinese document's blocks of code by the English ones, in order."""
-    blocks = iter(re.findall(r"^```.*?^```$", ENGLISH.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL))
-    text = re.sub(r"^```.*?^```$", lambda match: next(blocks), CHINESE.read_text(encoding="utf-8"),
-                  flags=re.MULTILINE | re.DOTALL)
-    CHINESE.write_text(text, encoding="utf-8")
-
-
 def differences():
     blocks = [[block.language + "\n" + block.text for block in parse(path)[0]] for path in (ENGLISH, CHINESE)]
     for number, (ours, theirs) in enumerate(zip_longest(*blocks), 1):
         if ours != theirs:
-            yield f"block of code {number} differs: translation.py --write"
+            yield f"block of code {number} differs"
     for ours, theirs in zip_longest(sections(ENGLISH), sections(CHINESE), fillvalue=""):
         title = f"{ours.splitlines()[0]} / {theirs.splitlines()[0]}" if ours and theirs else "one more section"
         english, chinese = facts(ours), facts(theirs)
@@ -62,12 +47,4 @@ def differences():
                 yield f"{title}: {kind}: {values} / {chinese[kind]}"
 
 
-def main():
-    if sys.argv[1:] == ["--write"]:
-        write()
-    complaints = list(differences())
-    print("\n".join(complaints) or "the Chinese README has the English one's code, figures and links")
-    sys.exit(1 if complaints else 0)
-
-
-main()
+report(list(differences()), len(sections(ENGLISH)), 5, "sections")
