@@ -41,11 +41,11 @@ static size_t read_file(const char *path, char *content, size_t size)
     return count;
 }
 
-/* Appends a user. Those that find no room are left out. */
+/* Appends a user, as long as there is certainly room for its name and the port's. */
 static void add(port_t *port, const char *user)
 {
     const size_t length = strlen(port->text);
-    if (length + strlen(user) + strlen(port->name) + sizeof " and  uses " <= USERS_TEXT_SIZE) {
+    if (length < USERS_TEXT_SIZE / 2) {
         (void)snprintf(port->text + length, USERS_TEXT_SIZE - length, "%s%s",
                        length == 0 ? "" : " and ", user);
     }

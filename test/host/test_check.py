@@ -229,6 +229,16 @@ def test_the_kernels_console_on_the_port_is_named(talker, check, played):
     assert f"the kernel's console and brltty (process 800) use {port[5:]}, too" in check(port).flat
 
 
+@pytest.mark.parametrize("console, length, count", (("tty0", 33, 3), ("", 21, 2)), ids=("99 letters", "100 letters"))
+def test_of_many_programs_those_are_named_for_which_there_is_room(talker, check, played, console, length, count):
+    port = talker(b"")
+    played(**{f"{number:x<{length}}": f"cat {port}" for number in range(5)})
+    with open("root/sys/class/tty/console/active", "w", encoding="ascii") as file:
+        file.write(console or port[5:])
+    text = check(port).flat
+    assert text.count("(process 80") == count and f") use {port[5:]}, too" in text
+
+
 def test_another_program_does_not_spoil_a_good_verdict(lidar, check, played):
     port = lidar().port
     played(minicom=f"minicom -D {port}")

@@ -555,3 +555,14 @@ def test_what_is_no_recording_is_named(tmini, folder, convert, said):
 def test_a_stream_of_another_kind_is_named(tmini, start, options, said):
     start("--write", "file", "--seconds", "10", *options.split(), program=TMINI_SIM).finish()
     assert said in tmini("decode", "file").err
+
+
+@pytest.mark.parametrize("eaten, more, is_named", ((3, b"", True), (2, b"", False), (3, b"\x11\x13", False),
+                                                   (3, b"\x11", False), (3, b"\x13", False)))
+def test_packets_that_lack_11_or_13_are_named_if_nothing_else_has_them(tmini, eaten, more, is_named):
+    packets = [content for content in decode(Path(ROOM).read_bytes())[0] if not {0x11, 0x13} & set(content[2:4])]
+    counts = [sum(content.count(byte) for byte in (0x11, 0x13)) for content in packets]
+    plain = [content for content, count in zip(packets, counts) if count == 0]
+    lacking = [content.translate(None, b"\x11\x13") for content, count in zip(packets, counts) if count == 1]
+    Path("some").write_bytes(b"".join(one + plain[0] for one in [*plain[:20], *lacking[:eaten], more]))
+    assert ("the bytes 11 and 13 are missing" in tmini("decode", "some").err) == is_named

@@ -131,6 +131,14 @@ def test_settings_of_a_client_do_not_affect_the_next_one(lidar, client, clock):
     client(device.port).ask(ASK_FREQUENCY, SIX_HERTZ)
 
 
+def test_without_a_client_it_sleeps(lidar, clock):
+    stat = Path(f"/proc/{lidar().process.pid}/stat")
+    ticks = lambda: sum(map(int, stat.read_text(encoding="ascii").split(") ")[1].split()[11:13]))
+    before = ticks()
+    clock.sleep(1000)
+    assert ticks() - before < 30  # 0.3 s of the processor.
+
+
 def test_the_stream_goes_on_without_a_client_and_nothing_stale_is_kept(lidar, client, clock):
     device = lidar()
     one = client(device.port)
@@ -144,6 +152,14 @@ def test_the_stream_goes_on_without_a_client_and_nothing_stale_is_kept(lidar, cl
     one.close()
     clock.sleep(500)
     assert client(device.port).receive(1, 100) == b""
+
+
+def test_its_own_input_is_no_client(sim, client):
+    reader, writer = os.pipe()
+    run = sim("--tcp", "0", stdin=reader)
+    run.wait_for("\n")
+    client("tcp:" + run.out.strip()).ask(ASK_FREQUENCY, SIX_HERTZ)
+    os.close(reader), os.close(writer)
 
 
 # On Linux all of 127.0.0.0/8 is this computer: who listens on every address has these, too.
