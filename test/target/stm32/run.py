@@ -19,6 +19,7 @@ Exit status: 0 as expected, 1 not.
 """
 
 import argparse
+import collections
 import os
 import select
 import socket
@@ -202,11 +203,7 @@ class Packet:
 
     def __init__(self, content, gap):
         self.size, self.starts, self.gap = len(content), content[2] & 1, gap
-        self.points = [struct.pack("<HHBB", *point) for point in points(content)]
-
-    def follows(self):
-        """True if nothing was lost before it. LastCRC, a byte, may precede a start packet."""
-        return self.gap <= self.starts
+        self.points = b"".join(struct.pack("<HHBB", *point) for point in points(content))
 
 
 def packets_in(stream):
@@ -217,18 +214,22 @@ def packets_in(stream):
         end = at + len(content)
 
 
-def end_of_scan(packets, first, count, digest):
-    """The index after the last packet of the scan that begins with packets[first], or None if no such scan has this
-    number and digest of points."""
-    kept = b""
-    for i in range(first, len(packets)):
-        is_full = len(kept) == 6 * MOST_POINTS and packets[i].starts
-        if is_full or (i > first and len(kept) == 6 * count < 6 * MOST_POINTS):
-            return i if f"{zlib.crc32(kept):08x}" == digest else None
-        kept = (kept + b"".join(packets[i].points))[:6 * MOST_POINTS]
-        if len(kept) > 6 * count:
-            return None
-    return len(packets) if len(kept) == 6 * count and f"{zlib.crc32(kept):08x}" == digest else None
+Piece = collections.namedtuple("Piece", "end is_whole points crc")
+
+
+def pieces_from(packets, first):
+    """What a scan may be that begins with packets[first]: it ends before the next start packet, or where bytes were lost.
+    LastCRC, a byte, may precede a start packet."""
+    for end in range(first + 1, len(packets) + 1):
+        starts, gap = (packets[end].starts, packets[end].gap) if end < len(packets) else (0, 1)
+        if starts or gap:
+            kept = b"".join(packet.points for packet in packets[first:end])
+            is_whole = packets[first].starts and not any(packet.gap for packet in packets[first + 1:end]) and \
+                starts and gap <= 1 and len(kept) <= 6 * MOST_POINTS
+            kept = kept[:6 * MOST_POINTS]
+            yield Piece(end, bool(is_whole), str(len(kept) // 6), f"{zlib.crc32(kept):08x}")
+        if starts:
+            return
 
 
 # ------------------------------------------------------------------------------------- checking
@@ -246,66 +247,35 @@ class Findings(list):
         self.check(is_value == should, f"{what} is {is_value}, should be {should}")
 
 
-class Scans:
-    """Finds the packets of each scan on the console."""
-
-    def __init__(self, packets):
-        self.packets = packets
-        self.place = 0  # Index of the packet after the last scan.
-        self.may_skip = 1  # 0: the next scan begins at `place`; N: at one of the next N start packets.
-        self.complete = self.doubted = 0
-        self.problems = []
-
-    def begin_again(self):
-        """The lidar was started or has recovered: the scan in progress was discarded."""
-        if self.place > 0:
-            self.may_skip = 1 + MOST_CUT_OFF
-
-    def see(self, line):
-        said = values(line)
-        rest = range(self.place, len(self.packets))
-        places = [i for i in rest if self.packets[i].starts][:self.may_skip] if self.may_skip else [self.place]
-        for first in places:
-            end = end_of_scan(self.packets, first, int(said["points"]), said["crc"])
-            if end is not None:
-                self._judge(line, said["complete"] == "1", self.packets[first:end], self.packets[end:end + 1])
-                self.place, self.may_skip = end, 0
-                return
-        self.problems.append(f"these are not the points that were sent: {line}")
-        self.begin_again()
-
-    def _judge(self, line, says_complete, scan, following):
-        """`following` has the next packet, if there is one."""
-        is_closed = bool(following) and following[0].follows()
-        is_whole = (scan[0].starts and all(packet.follows() for packet in scan[1:]) and is_closed and
-                    following[0].starts and sum(len(packet.points) for packet in scan) <= MOST_POINTS)
-        self.complete += is_whole and says_complete
-        self.doubted += is_whole and not says_complete
-        for is_wrong, what in ((says_complete and not is_whole, "is not complete"),
-                               (any(packet.starts for packet in scan[1:]), "is of two revolutions"),
-                               (is_closed and not following[0].starts, "ended although nothing was missing")):
-            if is_wrong:
-                self.problems.append(f"this scan {what}: {line}")
-
-    def left(self):
-        return sum(packet.starts for packet in self.packets[self.place:])
+def scans_in(findings, texts, packets):
+    """Finds the packets of each scan on the console. Yields whether it is whole, and whether it is called complete."""
+    place, may_skip = 0, 1  # The next scan begins at `place`; unless this is 0, at one of the next start packets.
+    for text in texts:
+        if text in ("started", "recovered") and place > 0:
+            may_skip = 1 + MOST_CUT_OFF  # The scan in progress was discarded.
+        if text.startswith("scan "):
+            said = values(text)
+            starts = [i for i in range(place, len(packets)) if packets[i].starts][:may_skip] if may_skip else [place]
+            scan = next((piece for first in starts for piece in pieces_from(packets, first)
+                         if piece[2:] == (said["points"], said["crc"])), None)
+            if scan:
+                place, may_skip = scan.end, 0
+                yield scan.is_whole, said["complete"] == "1"
+            else:
+                may_skip = 1 + MOST_CUT_OFF
+                findings.append(f"these are not the points of a revolution, or of a part to a loss: {text}")
+    left = sum(packet.starts for packet in packets[place:])
+    findings.check(left <= MOST_CUT_OFF, f"the last {left} revolutions became no scans")
 
 
 def check_scans(findings, args, texts, log, packets, counters):
-    scans = Scans(packets)
-    for text in texts:
-        if text in ("started", "recovered"):
-            scans.begin_again()
-        if text.startswith("scan "):
-            scans.see(text)
-    print(f"scans: {len(scan_lines(texts))}, complete: {scans.complete}, doubted: {scans.doubted}, revolutions cut off "
-          f"by the stop: {scans.left()}")
-    findings += scans.problems
-    findings.check(args.lossy or scans.complete >= args.scans, f"only {scans.complete} scans are complete")
+    judged = collections.Counter(scans_in(findings, texts, packets))
+    complete, doubted, false = judged[True, True], judged[True, False], judged[False, True]
+    print(f"scans: {len(scan_lines(texts))}, complete: {complete}, doubted: {doubted}")
+    findings.check(false == 0, f"{false} scans are said to be complete and are not")
+    findings.check(args.lossy or complete >= args.scans, f"only {complete} scans are complete")
     # Where the cable was pulled, bytes are missing between two whole packets.
-    findings.check(scans.doubted <= log.count("fault unplug begins"),
-                   f"{scans.doubted} complete scans are said to have gaps")
-    findings.check(scans.left() <= MOST_CUT_OFF, f"the last {scans.left()} revolutions became no scans")
+    findings.check(doubted <= log.count("fault unplug begins"), f"{doubted} complete scans are said to have gaps")
     findings.equal("scans counted", counters["scans"], len(scan_lines(texts)))
 
 
