@@ -293,7 +293,7 @@ static void see_nothing(tmini_field_t *field)
     }
 }
 
-static void judge(tmini_field_t *field, bool complete)
+static void judge_field(tmini_field_t *field, bool complete)
 {
     if (field->inside >= field->points) {
         field->state = TMINI_FIELD_OCCUPIED;
@@ -310,7 +310,7 @@ void tmini_fields_end(const tmini_fields_t *fields, bool complete, uint32_t end_
         if (field->is_set_up) {
             (void)tmini_field_state(field, end_ms); /* It may have aged. */
             field->seen_ms = complete ? end_ms : field->seen_ms;
-            judge(field, complete);
+            judge_field(field, complete);
         }
     }
 }
