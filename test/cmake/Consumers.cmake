@@ -4,24 +4,19 @@
 # Uses the library from another CMake project, in each way that a user can, and checks that none of
 # our compile options reaches that project's own targets.
 
-foreach(way add_subdirectory FetchContent find_package)
+set(ways add_subdirectory FetchContent)
+if(TARGET tmini_tool)
+    list(APPEND ways find_package)
+endif()
+find_program(TMINI_PKG_CONFIG pkg-config)
+mark_as_advanced(TMINI_PKG_CONFIG)
+foreach(way ${ways})
     tmini_add_check(consumer.${way} consumer COMMAND ${CMAKE_COMMAND}
         -D WAY=${way} -D TMINI_SOURCE=${PROJECT_SOURCE_DIR}
         -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.${way}
         -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
-        -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
+        -D PKG_CONFIG=${TMINI_PKG_CONFIG} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.cmake)
 endforeach()
-
-# Installs and uninstalls everything.
-if(TARGET tmini_tool)
-    find_program(TMINI_PKG_CONFIG pkg-config)
-    mark_as_advanced(TMINI_PKG_CONFIG)
-    tmini_add_check(consumer.install consumer ALL COMMAND ${CMAKE_COMMAND}
-        -D TMINI_SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/consumer.install
-        -D COMPILER=${CMAKE_C_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
-        -D PKG_CONFIG=${TMINI_PKG_CONFIG}
-        -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/install.cmake)
-endif()
 
 # Compares the facts that the manifests of several ecosystems repeat.
 tmini_missing_programs(missing python3)

@@ -1,21 +1,16 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Checks that the manifests of several ecosystems agree.
-
-    manifests.py [ROOT]
-
-Compares their description, licence, author and keywords (.ci/version.py compares version and address), and
-checks that each list of sources contains every source of the library. Exit status: 0 they agree, 1 differences,
-which are printed.
-"""
+"""Checks that the manifests of several ecosystems agree: compares their description, licence, author and keywords
+(.ci/version.py compares version and address), and checks that each list of sources contains every source of the
+library, and that all files exist that a manifest names. Exit status: 0 they agree, 1 differences, which are printed."""
 
 import json
 import re
 import sys
 from pathlib import Path
 
-ROOT = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2]).resolve()
+ROOT = Path(__file__).resolve().parents[2]
 SOURCES = {path.name for path in ROOT.glob("lib/src/*.c")}
 complaints = []
 
@@ -82,38 +77,52 @@ def check_sources():
     """A build file that names one of the library's sources names all of them."""
     listed = set(re.findall(r"src/(\w+\.c)", read("lib/CMakeLists.txt")))
     demand(listed == SOURCES, f"lib/CMakeLists.txt does not list what lib/src holds: {listed ^ SOURCES}")
-    for path in ROOT.rglob("*"):
+    for path in (path for folder in ("", "cmake/", "examples/**/", "lib/**/", "port/**/", "zephyr/")
+                 for ending in ("CMakeLists.txt", "*.cmake", "*.mk") for path in ROOT.glob(folder + ending)):
         name = path.relative_to(ROOT).as_posix()
-        if re.match(r"test/|\.git/|(.*/)?build", name) or not re.search(r"(^|/)CMakeLists\.txt$|\.(cmake|mk)$", name):
-            continue
         named = set(re.findall(r"lib/src/(\w+\.c)", code_of(name)))
         demand(named in (set(), SOURCES), f"{name} names some of lib/src, but not {SOURCES - named}")
     for name in ("esp32/component.cmake", "pico/CMakeLists.txt", "ros2/CMakeLists.txt", "zephyr/CMakeLists.txt"):
         demand("/lib/src/*.c" in code_of(f"port/{name}"), f"port/{name} does not take lib/src/*.c")
 
 
-def exists(pattern):
-    return any(ROOT.glob(pattern))
+INCLUDED = re.findall("^    - (.*)$", read("idf_component.yml").partition("\n  include:\n")[2], re.MULTILINE)
+SKETCHES = [f"{example['base']}/{file}" for example in PLATFORMIO["examples"] for file in example["files"]]
+
+# What a manifest names, at least this many, and where that must be: {} is the name.
+NAMED = [
+    ("library.json", PLATFORMIO["headers"], 1, ("lib/include/{}", "port/*/{}")),
+    ("library.json", PLATFORMIO["export"]["include"], 1, ("{}",)),
+    ("library.json", SKETCHES, 1, ("{}",)),
+    ("examples/esp32_arduino/platformio.ini", 'SKETCH="(.*?)"*', 1, ("examples/esp32_arduino/platformio/{}",)),
+    ("port/arduino/library.properties", (find("port/arduino/library.properties", "^includes=(.*)$") or "?").split(","),
+     1, ("port/arduino/{}",)),
+    ("idf_component.yml", INCLUDED, 1, ("{}",)),
+    ("zephyr/module.yml", "^ +(?:cmake:|kconfig:|dts_root:|-) (.*)$*", 4, ("{}",)),
+]
+
+# What lists must contain.
+LISTED = [
+    ("library.json", PLATFORMIO["build"]["srcFilter"], ["+<lib/src/*.c>"]),
+    ("library.json", SKETCHES, [path.relative_to(ROOT).as_posix()
+                                for path in ROOT.glob("examples/esp32_arduino/*/*.ino")]),
+    ("idf_component.yml", INCLUDED, ["lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h",
+                                     "lib/include/tmini/parts/*.h"]),
+]
 
 
-def check_platformio():
-    demand("+<lib/src/*.c>" in PLATFORMIO["build"]["srcFilter"], "library.json does not build lib/src/*.c")
-    for header in PLATFORMIO["headers"]:
-        demand(exists(f"lib/include/{header}") or exists(f"port/*/{header}"), f"library.json: no such header: {header}")
-    files = [(example["base"], file) for example in PLATFORMIO["examples"] for file in example["files"]]
-    for name in [*PLATFORMIO["export"]["include"], *("/".join(file) for file in files)]:
-        demand((ROOT / name).exists(), f"library.json: no such file: {name}")
-    folder = ROOT / "examples/esp32_arduino"
-    for sketch in folder.glob("*/*.ino"):
-        demand(sketch.name in [file for _, file in files], f"library.json: no example: {sketch.name}")
-    for sketch in re.findall(r'SKETCH="(.*?)"', read("examples/esp32_arduino/platformio.ini")):
-        demand((folder / "platformio" / sketch).exists(), f"platformio.ini: no such sketch: {sketch}")
-
-
-def check_arduino():
-    for header in (find("port/arduino/library.properties", "^includes=(.*)$") or "nothing").split(","):
-        demand((ROOT / "port/arduino" / header).exists(), f"library.properties: no such header: {header}")
-    check_keywords()
+def check_files():
+    for manifest, names, least, places in NAMED:
+        names = find(manifest, names) if isinstance(names, str) else names
+        demand(len(names) >= least, f"{manifest} names only {names}")
+        for name in names:
+            demand(any(any(ROOT.glob(place.format(name))) for place in places), f"{manifest}: no such file: {name}")
+    for manifest, names, needed in LISTED:
+        for name in needed:
+            demand(name in names, f"{manifest} does not list {name}")
+    name = "examples/esp32_idf/main/idf_component.yml"
+    where = find(name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
+    demand(where and (ROOT / name).parent.joinpath(where).resolve() == ROOT, f"{name} does not lead to the component")
 
 
 def check_keywords():
@@ -129,30 +138,9 @@ def check_keywords():
                 demand(name in known, f"keywords.txt: {name} is missing")
 
 
-def check_esp_idf():
-    patterns = re.findall("^    - (.*)$", read("idf_component.yml").partition("\n  include:\n")[2], re.MULTILINE)
-    for pattern in patterns:
-        demand(exists(pattern), f"idf_component.yml: nothing to include: {pattern}")
-    for needed in ("lib/src/*.c", "lib/src/*.h", "lib/include/tmini/*.h", "lib/include/tmini/parts/*.h"):
-        demand(needed in patterns, f"idf_component.yml does not include {needed}")
-    name = "examples/esp32_idf/main/idf_component.yml"
-    where = find(name, r"^dependencies:\n  tmini:\n(?:    .*\n)*    override_path: (.*)$")
-    demand(where and (ROOT / name).parent.joinpath(where).resolve() == ROOT, f"{name} does not lead to the component")
-
-
-def check_zephyr():
-    places = find("zephyr/module.yml", "(?:cmake|kconfig|dts_root): (.*)*")
-    places += find("zephyr/module.yml", "^  - (.*)$*")
-    demand(len(places) >= 4, f"zephyr/module.yml names only {places}")
-    for place in places:
-        demand((ROOT / place).exists(), f"zephyr/module.yml: no such place: {place}")
-
-
 check_facts()
 check_sources()
-check_platformio()
-check_arduino()
-check_esp_idf()
-check_zephyr()
+check_files()
+check_keywords()
 print("\n".join(complaints) or "the manifests agree")
 sys.exit(1 if complaints else 0)
