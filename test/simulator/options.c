@@ -232,35 +232,13 @@ static bool is_consistent(const options_t *options)
     return true;
 }
 
-/* Lists the options for getopt_long(). The short ones begin with ":", which suppresses its error
- * messages. A long one returns BEYOND (above all characters) plus its index in the table. */
+/* What getopt_long() returns for an option: its letter, or BEYOND (above all characters) plus its
+ * index in the table. */
 #define BEYOND 256
 
-static void list_options(char *short_ones, struct option *long_ones)
+static int answer_of(size_t i)
 {
-    *short_ones++ = ':';
-    for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
-        const int has_value = known[i].value != NULL ? required_argument : no_argument;
-        long_ones[i].name = known[i].name;
-        long_ones[i].has_arg = has_value;
-        long_ones[i].val = BEYOND + (int)i;
-        if (known[i].letter != 0) {
-            *short_ones++ = known[i].letter;
-            *short_ones++ = ':';
-            short_ones -= has_value == no_argument ? 1 : 0;
-        }
-    }
-    *short_ones = '\0';
-}
-
-static const option_t *option_of(int answer)
-{
-    size_t i = 0;
-    while (answer < BEYOND && i < KNOWN_OPTIONS && known[i].letter != answer) {
-        i++;
-    }
-    i = answer < BEYOND ? i : (size_t)(answer - BEYOND);
-    return i < KNOWN_OPTIONS ? &known[i] : NULL;
+    return known[i].letter != 0 ? known[i].letter : BEYOND + (int)i;
 }
 
 static bool set(options_t *options, const option_t *option, const char *value)
@@ -282,29 +260,33 @@ static bool set(options_t *options, const option_t *option, const char *value)
 
 static bool take(options_t *options, int answer, const char *word)
 {
-    const option_t *option = answer == '?' || answer == ':' ? NULL : option_of(answer);
-    if (option == NULL) {
-        return complain(word,
-                        answer == ':' ? " needs a value" : " is not an option, or needs no value");
+    for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
+        if (answer_of(i) == answer) {
+            return set(options, &known[i], optarg) || complain_of(&known[i], optarg);
+        }
     }
-    return set(options, option, optarg) || complain_of(option, optarg);
+    return complain(word,
+                    answer == ':' ? " needs a value" : " is not an option, or needs no value");
 }
 
 bool options_parse(options_t *options, int argc, char **argv)
 {
-    char short_ones[2 * KNOWN_OPTIONS + 2];
-    struct option long_ones[KNOWN_OPTIONS + 1];
+    struct option long_ones[KNOWN_OPTIONS + 1] = {{0}};
     int at = optind; /* of the word with the next option */
     int answer;
     memset(options, 0, sizeof *options);
-    memset(long_ones, 0, sizeof long_ones);
     options->tcp_port = -1;
     options->boot_ms = -1;
     options->speed = 1.0;
     options->device = sim_default_config();
     options->link = sim_link_default_config();
-    list_options(short_ones, long_ones);
-    while ((answer = getopt_long(argc, argv, short_ones, long_ones, NULL)) != -1) {
+    for (size_t i = 0; i < KNOWN_OPTIONS; i++) {
+        long_ones[i].name = known[i].name;
+        long_ones[i].has_arg = known[i].value != NULL ? required_argument : no_argument;
+        long_ones[i].val = answer_of(i);
+    }
+    /* ":" suppresses its messages. */
+    while ((answer = getopt_long(argc, argv, ":hVs:", long_ones, NULL)) != -1) {
         if (!take(options, answer, argv[at])) {
             return false;
         }
