@@ -9,9 +9,10 @@
 #include "tmini_driver.h"
 
 /* No change between 6 and 12 Hz needs more than 14 steps (5 of 1 Hz and 9 of 0.1 Hz). A step in
- * vain counts for more, so a lidar that obeys none is given up after four. */
-#define STEPS_MAX 32
-#define STEPS_IN_VAIN 7 /* What one counts for beside itself. */
+ * vain counts for 16. So a lidar that obeys none is given up after four, and any change may have
+ * three. */
+#define STEPS_MAX 64
+#define STEPS_IN_VAIN 15 /* What one counts for beside itself. */
 #define COARSE_STEP_CHZ 100
 
 /* A lidar that boots answers nothing, and what is sent to it is lost (section 9.16). So the first

@@ -6,7 +6,7 @@
 #include "tmini_driver.h"
 
 /* As in tmini_command.c, which does not export them. */
-#define STEPS_MAX 39
+#define STEPS_MAX 79
 #define ASKS_MAX 30
 #define CHANCES_MAX 3
 #define PLAUSIBLE_CHZ_MAX 2000

@@ -162,7 +162,7 @@ PROOFS = [
            slow=True),
     driver("nothing", "lib/src/tmini.c", "tmini_parser_abandon(&lidar->decoder.parser);",
            "(tmini_command_end(lidar, TMINI_ERROR_ABORTED), true);"),
-    driver("advance", "lib/src/tmini_command.c", "command->steps == STEPS_MAX",
+    driver("advance", "lib/src/tmini_command.c", "command->steps >= STEPS_MAX",
            "command->steps > STEPS_MAX", slow=True),
     driver("start", "lib/src/tmini.c", "        if (is_to_scan(lidar)) {", "        if (false) {"),
     driver("request_info", "lib/src/tmini.c",
