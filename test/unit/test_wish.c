@@ -6,14 +6,30 @@
 
 #include "tale.h"
 
-void setUp(void)
+static tmini_point_t spare[RIG_POINTS];
+
+static void step(const void *data, tmini_scan_t *scan)
 {
-    tale_begin();
+    TEST_ASSERT_EQUAL_PTR(&rig, data);
+    for (unsigned i = 0; i < scan->count; i++) {
+        scan->points[i].distance_mm++;
+    }
 }
 
-void tearDown(void)
+/* "step": one that makes all distances 1 mm longer is applied to each scan; "step-data": its data
+ * alone; "spare": there are spare points; "spare-mm:800": the distance of the first of them. */
+static bool tell(char *word)
 {
-    tale_end();
+    const row_number_t numbers[] = {{"spare-mm", spare[0].distance_mm}};
+    if (row_is(word, "step") || row_is(word, "step-data")) {
+        rig.config.step = row_is(word, "step") ? step : NULL;
+        rig.config.step_data = &rig;
+    } else if (row_is(word, "spare")) {
+        rig.config.spare_points = spare;
+    } else {
+        return row_expects(word, numbers);
+    }
+    return true;
 }
 
 #define WAITS                                                                                   \
@@ -182,78 +198,20 @@ static const row_t tales[] IN_FLASH = {
         "wish:1 refused / wish:590 refused / wish:599 refused / wish:1201 refused / wish:1210 "
         "refused / wish:600 !NONE / wish:1200 !NONE"),
     ROW(a_listener_sets_no_frequency, "listen wish:600 refused"),
+    ROW(steps_and_spare_points_need_points_and_data_needs_a_step,
+        "step !NONE / step-data refused / step packets refused / spare packets refused"),
+    ROW(a_step_changes_each_scan_once_before_it_is_delivered,
+        "step starts <scan <P !STARTED <small:700 <small:800 !SCAN first-mm:701 second-mm:1001 "
+        "<small:900 !SCAN first-mm:801"),
+    ROW(with_spare_points_a_scan_stays_until_the_next, /* The third is stored over the first. */
+        "spare starts <scan <P !STARTED <small:700 <small:800 !SCAN count:9 first-mm:700 !NONE "
+        "first-mm:700 spare-mm:800 <small:900 !SCAN count:9 spare-mm:800 first-mm:700 !NONE "
+        "spare-mm:800 first-mm:900"),
     ROW(nothing_is_sent_before_the_first_wish, "+10000 @UNKNOWN faults:0 ?OK #0"),
 };
 
 void test_tales(void)
 {
+    tale_words = tell;
     run_rows(tales, tale_tell_row);
-}
-
-/* ---- Steps applied to a finished scan, and spare points ---- */
-
-static void step(const void *data, tmini_scan_t *scan)
-{
-    TEST_ASSERT_EQUAL_PTR(&rig, data);
-    for (unsigned i = 0; i < scan->count; i++) {
-        scan->points[i].distance_mm++;
-    }
-}
-
-void test_steps_and_spare_points_need_points_and_data_needs_a_step(void)
-{
-    static tmini_point_t spare[RIG_POINTS];
-    rig.config.step_data = &rig;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
-    rig.config.step = step;
-    rig_init();
-    rig.config.points = NULL;
-    rig.config.max_points = 0;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
-    rig.config.step = NULL;
-    rig.config.step_data = NULL;
-    rig_init();
-    rig.config.spare_points = spare;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_init(&rig.lidar, &rig.config));
-}
-
-static void scan_turns(unsigned count)
-{
-    for (unsigned i = 0; i < count; i++) {
-        rig.now_ms += 160;
-        rig_feed_plain_turn((uint16_t)(1000 + 100 * i));
-    }
-}
-
-void test_a_step_changes_each_scan_once_before_it_is_delivered(void)
-{
-    rig.config.step = step;
-    rig.config.step_data = &rig;
-    tale_tell("starts <scan <P !STARTED");
-    scan_turns(2);
-    tale_tell("!SCAN");
-    TEST_ASSERT_EQUAL_UINT16(1001, tmini_scan(&rig.lidar)->points[0].distance_mm);
-    scan_turns(1);
-    tale_tell("!SCAN");
-    TEST_ASSERT_EQUAL_UINT16(1101, tmini_scan(&rig.lidar)->points[0].distance_mm);
-}
-
-void test_with_spare_points_a_scan_stays_until_the_next(void)
-{
-    static tmini_point_t spare[RIG_POINTS];
-    rig.config.spare_points = spare;
-    tale_tell("starts <scan <P !STARTED");
-    scan_turns(2);
-    tale_tell("!SCAN");
-    const tmini_scan_t *const scan = tmini_scan(&rig.lidar);
-    TEST_ASSERT_EQUAL_PTR(rig.points, scan->points);
-    tale_tell("!NONE"); /* The next scan is stored elsewhere. */
-    TEST_ASSERT_EQUAL_UINT16(17, scan->count);
-    TEST_ASSERT_EQUAL_UINT16(1000, scan->points[1].distance_mm);
-    scan_turns(1);
-    tale_tell("!SCAN");
-    TEST_ASSERT_EQUAL_PTR(spare, tmini_scan(&rig.lidar)->points);
-    tale_tell("!NONE");
-    TEST_ASSERT_EQUAL_UINT16(1100, spare[1].distance_mm); /* The third is stored over the first. */
-    TEST_ASSERT_EQUAL_UINT16(1000, rig.points[1].distance_mm);
 }
