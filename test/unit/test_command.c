@@ -22,7 +22,8 @@ static const row_t tales[] IN_FLASH = {
         "quiet:599 attempts:1 info >65 ~549 <junk !NONE 59( ~10 !NONE ) ~9 >90 <info !INFO"),
     ROW(with_quiet_line_0_the_command_follows_at_once, "quiet:0 info >65 >90 <info !INFO"),
     ROW(a_port_that_takes_one_byte_per_call_gets_the_other_at_the_next_poll,
-        "takes:1 info >A5 >!65 +50 >A5 ~99 >!90 <info !INFO"),
+        "takes:1 info >A5 >!65 +50 >A5 ~99 >!90 <info !INFO / idle info >90 !NONE ~2000 takes:1 "
+        ">A5 >!65"),
     ROW(the_time_to_send_runs_from_the_first_offer,
         "takes:0 info ~99 !NONE ~1 !FAILED ?WRITE @UNKNOWN"),
     ROW(a_command_made_long_before_the_next_poll_is_still_offered_for_100_ms,

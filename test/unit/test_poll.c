@@ -36,7 +36,10 @@ static const row_t tales[] IN_FLASH = {
     ROW(the_time_between_two_polls_is_silence_for_50_ms_at_most, /* The byte is left after 101. */
         "frame:101 <x:AA !NONE 2( ~60 !NONE ) pending:1 ~1 !NONE pending:0"),
     ROW(a_frame_timeout_may_be_longer_than_256_ms,
-        "frame:300 <x:AA !NONE 6( pending:1 ~50 !NONE ) pending:0"),
+        "frame:300 <x:AA !NONE 6( pending:1 ~50 !NONE ) pending:0 / frame:300 <x:AA !NONE 5( ~50 "
+        "!NONE ) ~45 !NONE pending:1 ~5 !NONE pending:0"),
+    ROW(a_poll_after_a_multiple_of_256_or_65536_ms_does_what_is_due,
+        "idle info >90 !NONE ~2304 >65 / idle info >90 !NONE ~65536 >65"),
     ROW(without_a_frame_timeout_a_reply_in_two_parts_is_taken,
         "frame:0 idle health >92 <x:A55A030000 !NONE ~1 <x:0006000000 !HEALTH"),
     ROW(without_a_frame_timeout_a_silent_poll_gives_up_a_reply,
