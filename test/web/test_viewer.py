@@ -11,7 +11,7 @@ import re
 import threading
 
 import pytest
-from conftest import PAGE, RECORDINGS, decode, requests, stories
+from conftest import HERE, PAGE, RECORDINGS, decode, requests, stories
 
 SIZE_MAX = 150_000
 
@@ -247,6 +247,14 @@ class TestAppearance:
         for pair in WORDS.split(", "):
             one, other = pair.split()
             assert contrast(colours[one], colours[other]) >= 4.5, pair
+
+
+def test_points_on_dark_have_the_colours_of_the_tools_pictures():
+    examples = HERE.parents[1] / "examples"
+    dark = re.search(r"dark: \[(.*)\],", (examples / "web/page/picture.js").read_text(encoding="utf-8"))[1]
+    stops = re.search(r"stops\[\] = \{(.*?)\};", (examples / "host/points.c").read_text(encoding="utf-8"), re.DOTALL)[1]
+    assert [int(number) for number in re.findall(r"\d+", dark)] == [
+        round(255 * float(number)) for number in re.findall(r"\d\.\d+", stops)]
 
 
 @pytest.mark.parametrize("settings", [{"size": PHONE}], ids=["phone"])
