@@ -119,7 +119,6 @@ static void follow(sim_judge_t *judge, sim_reading_t *reading, uint32_t place)
     if (lie != 0 && (reading->lies & odd) == 0) {
         reading->before = reading->last;
         reading->odd = place;
-        reading->odd_at = reading->points;
     } else if (lie == 0 && reading->points > 0 && place > reading->last + 1) {
         note_hole(reading, place - reading->last - 1,
                   turned_q6(sim_judge_sample(judge, reading->last)->point.angle_q6,

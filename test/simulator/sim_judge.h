@@ -52,7 +52,6 @@ typedef struct {
     uint32_t last;      /* of the latest, */
     uint32_t odd;       /* of the first one of another turn or out of order, */
     uint32_t before;    /* and of the one before that. */
-    uint32_t odd_at;    /* Its index. */
     uint32_t missing;   /* Samples; at the beginning any number counts as one. */
     uint32_t widest_q6; /* The widest hole that these left. */
     unsigned lies;

@@ -69,7 +69,7 @@ def measure_compiler(name, folder, made):
     target = other_compilers()[name]
     place = folder / name
     objects = [target.compile(source, "-Os", place) for source in LIB_SOURCES]
-    return {"title": target.title, "driver": flash.weigh(target, objects, place / "driver.elf", flash.DRIVER),
+    return {"driver": flash.weigh(target, objects, place / "driver.elf", flash.DRIVER),
             "blocks": instructions.by_blocks(target, "-Os", objects, place, made)}
 
 

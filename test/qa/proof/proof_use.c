@@ -31,13 +31,15 @@ static tmini_scan_t any_scan(void)
     return scan;
 }
 
-/* Every angle has a bin, for any number of bins. */
-void prove_ranges_bin(void)
+/* Every angle has a bin and a sector, for any number of them. */
+void prove_bins(void)
 {
     const uint16_t angle_q6 = nondet_half();
-    const size_t count = nondet_half();
+    const uint16_t count = nondet_half();
+    const tmini_sectors_t sectors = {.count = count};
     ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6 && count >= 1);
     CLAIM(tmini_ranges_bin(angle_q6, count) < count);
+    CLAIM(tmini_sectors_at(&sectors, angle_q6) < count);
 }
 
 void prove_ranges_of_scan(void)
@@ -62,15 +64,6 @@ void prove_sectors(void)
     if (tmini_sectors_init(&sectors, array, count, nondet_byte()) == TMINI_OK) {
         tmini_sectors_add_scan(&sectors, &scan);
     }
-}
-
-void prove_sectors_at(void)
-{
-    const tmini_sectors_t sectors = {.count = nondet_half()};
-    const uint16_t angle_q6 = nondet_half();
-    ASSUME(sectors.count >= 1);
-    ASSUME(angle_q6 < TMINI_FULL_CIRCLE_Q6);
-    CLAIM(tmini_sectors_at(&sectors, angle_q6) < sectors.count);
 }
 
 void prove_mount_angle(void)

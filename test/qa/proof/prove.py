@@ -12,14 +12,14 @@ broken in one place, which the table below names for each proof; then another cl
 """
 
 import argparse
-import os
 import re
 import resource
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
-ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
+ROOT = Path(__file__).resolve().parents[3]
 FOLDERS = ("lib/include", "lib/src", "test/qa/proof", "test/support")
 
 RING = ["tmini_ring.c"]
@@ -44,11 +44,10 @@ class Proof:
     """One proof: its sources, the bounds of its loops, and the change that breaks the library."""
 
     def __init__(self, name, files, sources, unwind, bounds, broken, loops="", stubs=(), cases=((),),
-                 options=(), function=None, slow=False, inserted=(), replaced=()):
+                 function=None, slow=False, inserted=(), replaced=()):
         self.name, self.files, self.sources, self.unwind = name, files, sources, unwind
         self.bounds, self.broken, self.loops, self.stubs = bounds, broken, loops, stubs
-        self.cases, self.options, self.slow = cases, options, slow
-        self.inserted, self.replaced = inserted, replaced
+        self.cases, self.slow, self.inserted, self.replaced = cases, slow, inserted, replaced
         self.function = "prove_" + (function or name)
 
 
@@ -138,11 +137,9 @@ PROOFS = [
     scan("ct_crc", "lib/src/tmini_ct.c", "sum << 6", "sum << 5"),
     scan("ct_add", "lib/src/tmini_ct.c", " || start->gap != 1", ""),
     scan("ct_read", "lib/src/tmini_ct.c", "trusted[DAY] >> 3", "trusted[DAY] >> 2"),
-    use("ranges_bin", "all angles, 1 to 65535 bins", "lib/src/tmini_bins.h", "(bin < count ? bin : 0)", "(bin)"),
+    use("bins", "all angles, 1 to 65535 bins or sectors", "lib/src/tmini_bins.h", "(bin < count ? bin : 0)", "(bin)"),
     use("ranges_of_scan", "up to 3 points, 4 bins", "lib/src/tmini_ranges.c", "count == 0 || ", ""),
     use("sectors", "up to 3 points, 4 sectors", "lib/src/tmini_bins.h",
-        "(bin < count ? bin : 0)", "(bin)"),
-    use("sectors_at", "all angles, 1 to 65535 sectors", "lib/src/tmini_bins.h",
         "(bin < count ? bin : 0)", "(bin)"),
     use("mount_angle", "all directions, all angles", "lib/src/tmini_mount.c", "while (within_q6 >= CIRCLE_Q6)",
         "while (within_q6 >= 2 * CIRCLE_Q6)", loops="tmini_mount_angle.0:4,tmini_mount_angle.1:4"),
@@ -179,65 +176,53 @@ PROOFS = [
 ]
 
 
+def run(*command, must=False):
+    done = subprocess.run(["nice", "-n", "19", *command], capture_output=True, text=True, check=False)
+    if must and done.returncode != 0:
+        sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
+    return done
+
+
 class Checker:
     """Runs CBMC on a copy of the sources."""
 
     def __init__(self, work):
-        self.folder = work
+        self.folder = Path(work)
 
     def copy_sources(self):
         for folder in FOLDERS:
-            target = os.path.join(self.folder, folder)
-            shutil.rmtree(target, ignore_errors=True)
-            shutil.copytree(os.path.join(ROOT, folder), target)
+            shutil.rmtree(self.folder / folder, ignore_errors=True)
+            shutil.copytree(ROOT / folder, self.folder / folder)
 
     def replace(self, path, old, new, only_look=False):
-        name = os.path.join(self.folder, path)
-        with open(name, encoding="utf-8") as file:
-            text = file.read()
+        text = (self.folder / path).read_text(encoding="utf-8")
         if text.count(old) != 1:
             sys.exit(f"{path} has {text.count(old)} times {old!r}: bring the table in prove.py up to date")
-        with open(name, "w", encoding="utf-8") as file:
-            file.write(text if only_look else text.replace(old, new))
-
-    def call(self, *command):
-        return subprocess.run(["nice", "-n", "19", *command], capture_output=True, text=True, check=False)
-
-    def demand(self, *command):
-        done = self.call(*command)
-        if done.returncode != 0:
-            sys.exit(f"{command[0]} ended with {done.returncode}\n{done.stdout}{done.stderr}")
-
-    def main_of(self, function):
-        """A program that runs the proof, and then claims what must fail."""
-        path = f"{self.folder}/main.c"
-        with open(path, "w", encoding="utf-8") as file:
-            print(f"void {function}(void); int main(void) {{ {function}(); __CPROVER_assert(0, \"{NOT_REACHED}\"); }}",
-                  file=file)
-        return path
+        if not only_look:
+            (self.folder / path).write_text(text.replace(old, new), encoding="utf-8")
 
     def check(self, proof, case):
         """The number of properties and the failed ones; `case` is a list of macros."""
-        program = f"{self.folder}/program"
-        folders = [option for folder in FOLDERS for option in ("-I", f"{self.folder}/{folder}")]
-        defines = ["-D", 'TMINI_ATOMIC_HEADER="proof_atomic.h"']
-        for define in case:
-            defines += ["-D", define]
-        files = [f"{self.folder}/test/qa/proof/{name}" for name in ["any.c"] + proof.files]
-        files += [self.main_of(proof.function)]
-        files += [f"{self.folder}/test/support/invariants.c"]
-        files += [f"{self.folder}/lib/src/{name}" for name in proof.sources]
-        self.demand("goto-cc", "-DTMINI_MEMCPY_ONLY", "-o", program, *folders, *defines, *files)
+        program, main_file = self.folder / "program", self.folder / "main.c"
+        # Runs the proof, and then claims what must fail.
+        main_file.write_text(f"void {proof.function}(void); int main(void) {{ {proof.function}(); "
+                             f"__CPROVER_assert(0, \"{NOT_REACHED}\"); }}\n", encoding="utf-8")
+        files = [main_file, self.folder / "test/support/invariants.c",
+                 *(self.folder / "test/qa/proof" / name for name in ["any.c"] + proof.files),
+                 *(self.folder / "lib/src" / name for name in proof.sources)]
+        macros = ("TMINI_MEMCPY_ONLY", 'TMINI_ATOMIC_HEADER="proof_atomic.h"', *case)
+        run("goto-cc", *(f"-D{macro}" for macro in macros), *(f"-I{self.folder / folder}" for folder in FOLDERS),
+            "-o", program, *files, must=True)
         for stub in proof.stubs:
-            self.demand("goto-instrument", "--remove-function-body", stub, program, program)
-            self.demand("goto-instrument", "--generate-function-body", stub, "--generate-function-body-options",
-                        "nondet-return", program, program)
+            run("goto-instrument", "--remove-function-body", stub, program, program, must=True)
+            run("goto-instrument", "--generate-function-body", stub, "--generate-function-body-options",
+                "nondet-return", program, program, must=True)
         for calls in proof.replaced:
-            self.demand("goto-instrument", "--replace-calls", calls, program, program)
+            run("goto-instrument", "--replace-calls", calls, program, program, must=True)
         loops = ["--unwindset", proof.loops] if proof.loops else []
         # Each copy of two bytes creates objects: more than CBMC's default limit of 2^8.
-        done = self.call("cbmc", "--drop-unused-functions", "--object-bits", "12", "--unwind", str(proof.unwind),
-                         *loops, *proof.options, program)
+        done = run("cbmc", "--drop-unused-functions", "--object-bits", "12", "--unwind", str(proof.unwind), *loops,
+                   program)
         count = re.search(r"^\*\* \d+ of (\d+) failed", done.stdout, re.MULTILINE)
         if not count:
             sys.exit(f"{proof.name}: CBMC has not finished\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
