@@ -8,7 +8,7 @@
  * Registers are as in Espressif's "ESP32-C3 Technical Reference Manual". The simulator differs from
  * the chip in three ways: see (1), (2) and (3) below. */
 
-#include "tmini/tmini.h"
+#include "tmini/tmini_blocking.h"
 
 #include <string.h>
 
@@ -45,12 +45,14 @@
 #define EXTERNAL_INTERRUPT (1u << 11)
 
 #define SCANS 4u
+#define PATIENCE_MS 3000u
 
 /* The results; the last one says that there are some. */
 tmini_info_t info;
 tmini_ct_info_t turn;
 uint32_t harm; /* Bytes and packets that were lost or damaged. */
-uint32_t faults, frequency_chz, overflows, incomplete, unexpected;
+tmini_health_t health;
+uint32_t frequency_chz, overflows, incomplete, unexpected;
 uint32_t counts[SCANS];
 tmini_point_t kept[SCANS][TMINI_SCAN_POINTS_TYPICAL];
 volatile uint32_t finished;
@@ -111,73 +113,57 @@ static int write_uart(void *context, const uint8_t *bytes, size_t count)
     return (int)taken;
 }
 
+static void wait_for_interrupt(void *context)
+{
+    (void)context;
+    __asm__ volatile("wfi");
+}
+
 /* ---- The job ---- */
 
-static void next_step(void)
-{
-    static tmini_status_t (*const steps[])(tmini_t *) = {tmini_request_info, tmini_request_health,
-                                                         tmini_start, tmini_stop};
-    static unsigned step;
-    if (step < sizeof steps / sizeof steps[0]) {
-        (void)steps[step++](&lidar);
-    } else {
-        tmini_counters_t counters;
-        tmini_counters(&lidar, &counters);
-        harm =
-            counters.checksum_errors + counters.bytes_overrun + counters.losses + counters.timeouts;
-        finished = 1;
-    }
-}
-
-/* Scans that come after the last wanted one are ignored. */
 static void keep(const tmini_scan_t *scan)
 {
-    if (scans < SCANS) {
-        counts[scans] = scan->count;
-        incomplete += !scan->complete;
-        memcpy(kept[scans++], scan->points, scan->count * sizeof *scan->points);
-        if (scans == SCANS) {
-            tmini_ct_info(&lidar, &turn);
-            next_step();
-        }
-    }
+    counts[scans] = scan->count;
+    incomplete += !scan->complete;
+    memcpy(kept[scans++], scan->points, scan->count * sizeof *scan->points);
 }
 
-static void handle(tmini_event_t event)
+static void receive_scans(void)
 {
-    switch (event) {
-    case TMINI_EVENT_NONE:
-        __asm__ volatile("wfi");
-        break;
-    case TMINI_EVENT_INFO:
-        info = *tmini_info(&lidar);
-        next_step();
-        break;
-    case TMINI_EVENT_HEALTH:
-        faults = tmini_health(&lidar)->faults;
-        next_step();
-        break;
-    case TMINI_EVENT_FREQUENCY:
-        frequency_chz = tmini_frequency_chz(&lidar);
-        break;
-    case TMINI_EVENT_STARTED:
-        break;
-    case TMINI_EVENT_SCAN:
-        keep(tmini_scan(&lidar));
-        break;
-    case TMINI_EVENT_STOPPED:
-        next_step();
-        break;
-    default:
-        unexpected = event;
-        finished = 1;
-        break;
+    keep(tmini_scan(&lidar)); /* What the start has waited for. */
+    while (scans < SCANS && unexpected == 0) {
+        const tmini_event_t event = tmini_poll(&lidar);
+        if (event == TMINI_EVENT_SCAN) {
+            keep(tmini_scan(&lidar));
+        } else if (event == TMINI_EVENT_NONE) {
+            wait_for_interrupt(NULL);
+        } else {
+            unexpected = event;
+        }
     }
+    tmini_ct_info(&lidar, &turn);
+}
+
+static bool do_all(const tmini_config_t *config)
+{
+    if (tmini_init(&lidar, config) != TMINI_OK) {
+        return false;
+    }
+    open_board();
+    if (tmini_blocking_read_info(&lidar, &info, PATIENCE_MS) != TMINI_OK ||
+        tmini_blocking_read_health(&lidar, &health, PATIENCE_MS) != TMINI_OK ||
+        tmini_blocking_start(&lidar, PATIENCE_MS) != TMINI_OK) {
+        return false;
+    }
+    receive_scans();
+    frequency_chz = tmini_frequency_chz(&lidar);
+    return tmini_blocking_stop(&lidar, PATIENCE_MS) == TMINI_OK;
 }
 
 int main(void)
 {
-    static const tmini_port_t port = {.write = write_uart, .now_ms = now_ms};
+    static const tmini_port_t port = {
+        .write = write_uart, .now_ms = now_ms, .wait = wait_for_interrupt};
     const tmini_config_t config = {
         .port = &port,
         .rx_buffer = rx,
@@ -186,13 +172,11 @@ int main(void)
         .max_points = TMINI_SCAN_POINTS_TYPICAL,
         .frequency_chz = 1200,
     };
-    if (tmini_init(&lidar, &config) != TMINI_OK) {
-        return 1;
+    const bool is_done = do_all(&config);
+    tmini_counters_t counters;
+    tmini_counters(&lidar, &counters);
+    harm = counters.checksum_errors + counters.bytes_overrun + counters.losses + counters.timeouts;
+    finished = is_done ? 1 : 2;
+    for (;;) {
     }
-    open_board();
-    next_step();
-    while (finished == 0) {
-        handle(tmini_poll(&lidar));
-    }
-    return 0;
 }

@@ -39,11 +39,12 @@ RESULTS = {
     "info": ("4B16B", (151, 2, 1, 1, 2, 0, 2, 6, 0, 3, 1, 7, 0, 0, 0, 1, 2, 3, 4, 5)),
     "turn": ("<H10xI", (0b10111000111010, 12345)),  # Indices 1, 3, 4, 5, 9, 10, 11 and 13 are known.
     "harm": ("<I", (0,)),
-    "faults": ("<I", (0,)),
+    "health": ("<BxH", (0, 0)),
     "frequency_chz": ("<I", (1200,)),
     "overflows": ("<I", (0,)),
     "incomplete": ("<I", (0,)),
     "unexpected": ("<I", (0,)),
+    "finished": ("<I", (1,)),  # All that was asked for was done.
 }
 
 # GCC 12 needs the extension zicsr for the CSR instructions, but finds no C library built with that name. In edition
@@ -75,7 +76,7 @@ def run(firmware, system, lidar):
         print(f"{now_us / 1e6} s on the simulated chip, {sim.cycles} cycles")
         return sent, {name: sim.read_memory(sim.symbol(name), size) for name, size in (
             *((name, struct.calcsize(kind)) for name, (kind, _) in RESULTS.items()),
-            ("finished", 4), ("counts", 4 * SCANS), ("kept", 6 * POINTS_OF_A_SCAN * SCANS))}
+            ("counts", 4 * SCANS), ("kept", 6 * POINTS_OF_A_SCAN * SCANS))}
 
 
 def scans_in(memory):
@@ -114,8 +115,6 @@ def main():
         wrong.append(f"sent {sent.hex(' ')}, expected {COMMANDS.hex(' ')}")
     wrong += [f"scan {number} of {len(scan)} points is not turn {number} of {len(turn)}"
               for number, (scan, turn) in enumerate(zip(scans_in(memory), turns_in(lidar.sent)), 1) if scan != turn]
-    if not any(memory["finished"]):
-        wrong.append("the firmware has not finished")
     print("\n".join(wrong) or "every point is the lidar's, in its place")
     sys.exit(1 if wrong else 0)
 
