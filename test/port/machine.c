@@ -40,7 +40,9 @@ void machine_new_lidar(const sim_observer_t *observer)
     config.marked =
         observer != NULL; /* So that each point shows which sample it is (scanning.h). */
     sim_init(&machine.lidar, &config);
-    sim_observe(&machine.lidar, observer);
+    if (observer != NULL) {
+        sim_observe(&machine.lidar, observer);
+    }
 }
 
 void machine_begin(const sim_observer_t *observer, const machine_uart_t *uart)
