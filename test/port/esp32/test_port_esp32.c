@@ -79,8 +79,6 @@ void setUp(void)
     set_up();
 }
 
-void tearDown(void) {}
-
 static void assert_calls(const char *expected)
 {
     TEST_ASSERT_EQUAL_STRING(expected, idf.calls);

@@ -102,8 +102,6 @@ void setUp(void)
     scan_node_init(&node, &lidar, &config, frame);
 }
 
-void tearDown(void) {}
-
 /* 6 Hz, minus the time in which the motor spins up. Connecting may allocate, publishing must not. */
 void test_each_scan_is_published_and_allocates_nothing(void)
 {

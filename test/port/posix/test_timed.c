@@ -20,8 +20,6 @@ void setUp(void)
     stream_size = 0;
 }
 
-void tearDown(void) {}
-
 /* --------------------------------------------------------------------------------------- chunks */
 
 static void put(const void *bytes, size_t count)

@@ -44,8 +44,6 @@ void setUp(void)
     };
 }
 
-void tearDown(void) {}
-
 static void add(float degrees, uint16_t distance_mm, uint8_t intensity)
 {
     const uint16_t angle_q6 = (uint16_t)lroundf(degrees * 64.0f) % TMINI_FULL_CIRCLE_Q6;

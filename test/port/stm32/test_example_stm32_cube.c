@@ -60,8 +60,6 @@ void setUp(void)
     errors_handled = 0;
 }
 
-void tearDown(void) {}
-
 static void work_for(uint32_t ms)
 {
     for (uint32_t i = 0; i < ms; i++) {

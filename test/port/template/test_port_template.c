@@ -23,8 +23,6 @@ void setUp(void)
     TEST_ASSERT_EQUAL(TMINI_OK, tmini_port_template_start(&port, &lidar));
 }
 
-void tearDown(void) {}
-
 static uint32_t line_errors(void)
 {
     tmini_port_template_counters_t line;

@@ -43,8 +43,6 @@ void setUp(void)
     tmini_zephyr_device_callback_set(device, on_event, &scans);
 }
 
-void tearDown(void) {}
-
 static void pass_ms(int ms)
 {
     (void)k_sleep(K_MSEC(ms));

@@ -23,10 +23,6 @@ typedef struct {
     bool has_stood; /* It stands in the end. */
 } drive_t;
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* docs/robotics.md, "Safety": two turns, the loop, and the way to brake. */
 static int16_t length_mm(uint16_t frequency_chz)
 {
