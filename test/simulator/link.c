@@ -32,18 +32,17 @@ bool sim_link_counts_bytes(sim_link_kind_t kind)
 
 sim_link_config_t sim_link_default_config(void)
 {
-    sim_link_config_t config;
-    memset(&config, 0, sizeof config);
-    config.seed = 1;
-    config.shortest[SIM_LINK_BURST] = 2;
-    config.longest[SIM_LINK_BURST] = 64;
-    config.shortest[SIM_LINK_STALL] = 5;
-    config.longest[SIM_LINK_STALL] = 100;
-    config.shortest[SIM_LINK_UNPLUG] = 500;
-    config.longest[SIM_LINK_UNPLUG] = 5000;
-    config.shortest[SIM_LINK_GARBLE] = 50;
-    config.longest[SIM_LINK_GARBLE] = 2000;
-    return config;
+    return (sim_link_config_t){
+        .seed = 1,
+        .shortest = {[SIM_LINK_BURST] = 2,
+                     [SIM_LINK_STALL] = 5,
+                     [SIM_LINK_UNPLUG] = 500,
+                     [SIM_LINK_GARBLE] = 50},
+        .longest = {[SIM_LINK_BURST] = 64,
+                    [SIM_LINK_STALL] = 100,
+                    [SIM_LINK_UNPLUG] = 5000,
+                    [SIM_LINK_GARBLE] = 2000},
+    };
 }
 
 /* ---- When faults come ---- */
@@ -156,23 +155,11 @@ static bool meets(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
     return true;
 }
 
-/* The inserted byte differs from the following one, so that the packet is really broken. */
-static void insert_before(sim_link_t *link, uint8_t following)
-{
-    const uint8_t byte = spoiled(link, following);
-    deliver(link, &byte, 1);
-}
-
 static void count_burst_down(sim_link_t *link, uint64_t at_us)
 {
     if (link->under_way[SIM_LINK_BURST] && --link->burst_left == 0u) {
         end(link, SIM_LINK_BURST, at_us);
     }
-}
-
-static bool is_asked_for(const sim_link_t *link, const sim_run_t *run, size_t i)
-{
-    return link->observer.loses != NULL && link->observer.loses(link->observer.context, run, i);
 }
 
 /* LastCRC comes before a start packet in the same frame, but is not part of the packet. */
@@ -183,7 +170,9 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
     const bool in_packet = place >= run->packet_at;
     uint8_t byte = run->bytes[i];
     if (meets(link, SIM_LINK_INSERT, at_us)) {
-        insert_before(link, run->bytes[i]);
+        byte = spoiled(link, run->bytes[i]); /* Differs, so that the packet is really broken. */
+        deliver(link, &byte, 1);
+        byte = run->bytes[i];
         link->packet.intact = link->packet.intact && place <= run->packet_at;
     }
     if (meets(link, SIM_LINK_FLIP, at_us)) {
@@ -193,7 +182,7 @@ static void pass_byte(sim_link_t *link, const sim_run_t *run, size_t i)
         byte = spoiled(link, run->bytes[i]);
     }
     if (meets(link, SIM_LINK_DROP, at_us) || place >= link->cut_from ||
-        is_asked_for(link, run, i)) {
+        (link->observer.loses != NULL && link->observer.loses(link->observer.context, run, i))) {
         link->packet.intact = link->packet.intact && !in_packet;
     } else {
         link->packet.intact = link->packet.intact && (!in_packet || byte == run->bytes[i]);
@@ -480,9 +469,4 @@ bool sim_link_is_faulty(const sim_link_t *link)
         }
     }
     return false;
-}
-
-uint64_t sim_link_last_fault_us(const sim_link_t *link)
-{
-    return link->last_fault_us;
 }

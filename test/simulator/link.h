@@ -70,7 +70,7 @@ typedef struct {
 /* Holds the bytes of a stall of 150 ms; during a longer one the device waits. */
 #define SIM_LINK_BACKLOG 4096u
 
-/* Caller-owned. Users may read `counts` and `delivered`; the rest is private. */
+/* Caller-owned. Users may read `counts`, `delivered` and `last_fault_us`; the rest is private. */
 typedef struct {
     sim_t *sim;
     sim_link_config_t config;
@@ -86,7 +86,7 @@ typedef struct {
     bool throttled;      /* during a stall and until the backlog has drained */
     uint64_t held_from;  /* first byte held back */
     uint64_t release_us; /* when the stall ends */
-    uint64_t last_fault_us;
+    uint64_t last_fault_us; /* when the last fault of any kind ended */
     bool packet_open;
     sim_link_packet_t packet;
     uint8_t packet_bytes[SIM_FRAME_MAX];
@@ -125,9 +125,8 @@ void sim_link_calm(sim_link_t *link, uint64_t now_us);
  * cut hit the next byte or packet. */
 void sim_link_force(sim_link_t *link, sim_link_kind_t kind, uint32_t amount, uint64_t now_us);
 
-/* Whether a fault with a duration is active, and when the last fault of any kind ended. */
+/* Whether a fault with a duration is active. */
 bool sim_link_is_faulty(const sim_link_t *link);
-uint64_t sim_link_last_fault_us(const sim_link_t *link);
 
 /* "drop", "flip" ...; the second finds the kind of a name: SIM_LINK_KINDS if there is none. */
 const char *sim_link_kind_name(sim_link_kind_t kind);

@@ -15,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SECOND UINT64_C(1000000)
 #define STREAM_MAX 4000000u
 #define PACKETS_MAX 20000u
 
@@ -154,17 +153,21 @@ static reference_counts_t counts;
 static struct {
     unsigned ranges;
     unsigned flags[4];
-    unsigned lone;  /* Packets of one sample, with LSA slightly below FSA, */
-    unsigned askew; /* and with another LSA. */
-    unsigned gaps;  /* Bytes between packets. */
-    unsigned aa;    /* LastCRC of this value, */
-    unsigned wrong; /* and of a wrong one. */
-    unsigned cts;   /* CT bytes of point packets that are not 0. */
-    unsigned off;   /* The farthest start packet from its usual angle, but for the first packet; */
-    unsigned slow;  /* the lowest frequency in their CT bytes, and the highest. */
-    unsigned fast;
-    unsigned before; /* Samples before the first of them. */
+    unsigned lone;   /* Packets of one sample, with LSA slightly below FSA, */
+    unsigned askew;  /* and with another LSA. */
+    unsigned gaps;   /* Bytes between packets. */
+    unsigned aa;     /* LastCRC of this value, */
+    unsigned wrong;  /* and of a wrong one. */
+    unsigned cts;    /* CT bytes of point packets that are not 0. */
+    unsigned off;    /* The farthest start packet from its usual angle, but for the first packet, */
+    unsigned hz;     /* and the frequency farthest from the one set, in 0.1 Hz. */
+    unsigned before; /* Samples before the first start packet. */
 } is;
+
+static size_t absolute(size_t a, size_t b)
+{
+    return a > b ? a - b : b - a;
+}
 
 static unsigned larger(unsigned a, unsigned b)
 {
@@ -184,8 +187,7 @@ static void measure_start(const reference_item_t *packet, uint8_t crc, bool is_w
     is.aa += last_crc == 0xAA ? 1u : 0u;
     is.wrong += is_whole && crc != last_crc ? 1u : 0u;
     is.off = larger(is.off, apart_q6(packet->fsa >> 1, config.start_angle_q6));
-    is.slow = is.slow < packet->ct >> 1 ? is.slow : packet->ct >> 1;
-    is.fast = larger(is.fast, packet->ct >> 1);
+    is.hz = larger(is.hz, (unsigned)absolute(packet->ct >> 1, config.frequency_chz / 10u));
 }
 
 static void measure_point_packet(const reference_item_t *packet)
@@ -202,7 +204,6 @@ static void measure(void)
     uint8_t crc = 0;
     unsigned turns = 0;
     memset(&is, 0, sizeof is);
-    is.slow = 255;
     for (size_t i = 0; i < packet_count; i++) {
         const reference_item_t *const packet = &packets[i];
         if (!packet->starts_revolution) {
@@ -251,29 +252,17 @@ static size_t next_start(size_t from)
 
 /* ---- What the wire reports ---- */
 
-static size_t intact_packets(void)
-{
-    size_t intact = 0;
-    for (size_t i = 0; i < fate_count; i++) {
-        intact += fates[i].packet.intact ? 1u : 0u;
-    }
-    return intact;
-}
-
-static bool is_in_stream(const sim_link_packet_t *packet)
-{
-    return packet->intact && packet->offset + packet->sent.length <= size;
-}
-
 /* Every packet reported as intact has arrived. An independent decoder finds hardly any others (for
  * example, after two flips in one column of the checksum). */
 static void expect_the_truth_about_every_packet(void)
 {
     const reference_options_t options = {80, NULL};
     size_t there = 0;
+    size_t intact = 0;
     for (size_t i = 0; i < fate_count; i++) {
         const sim_link_packet_t *packet = &fates[i].packet;
-        if (is_in_stream(packet)) {
+        intact += packet->intact ? 1u : 0u;
+        if (packet->intact && packet->offset + packet->sent.length <= size) {
             TEST_ASSERT_EQUAL_MEMORY(fates[i].bytes, stream + packet->offset, packet->sent.length);
             there++;
         }
@@ -281,7 +270,7 @@ static void expect_the_truth_about_every_packet(void)
     const uint64_t found = reference_decode(stream, size, &options, NULL, NULL).packets;
     TEST_ASSERT_TRUE(found >= there && found <= there + fate_count / 1000u);
     TEST_ASSERT_EQUAL_size_t(fate_count, wire.counts.packets);
-    TEST_ASSERT_EQUAL_size_t(intact_packets(), wire.counts.intact_packets);
+    TEST_ASSERT_EQUAL_size_t(intact, wire.counts.intact_packets);
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
         TEST_ASSERT_UINT_WITHIN(1, heard.begun[kind], heard.ended[kind]);
         TEST_ASSERT_EQUAL_UINT(heard.begun[kind], wire.counts.faults[kind]);
@@ -289,11 +278,6 @@ static void expect_the_truth_about_every_packet(void)
 }
 
 /* ---- Facts ---- */
-
-static size_t absolute(size_t a, size_t b)
-{
-    return a > b ? a - b : b - a;
-}
 
 static unsigned kind_named(const char *word)
 {
@@ -317,7 +301,7 @@ static bool is_count_of_faults(const char *word, const char *prefix, const unsig
 
 static bool is_fact(const char *word)
 {
-    const size_t spoilt = fate_count - intact_packets();
+    const uint32_t spoilt = wire.counts.packets - wire.counts.intact_packets;
     decode();
     const row_number_t facts[] = {
         {"bytes", (uint32_t)size},
@@ -350,15 +334,14 @@ static bool is_fact(const char *word)
         {"wrong_crc", is.wrong},
         {"point_cts", is.cts},
         {"start_off", is.off},
-        {"slowest", is.slow},
-        {"fastest", is.fast},
+        {"uneven", is.hz},
         {"before", is.before},
         {"first_off", packet_count > 0 ? apart_q6(packets[0].fsa >> 1, config.first_angle_q6) : 0},
         {"first_ct", packet_count > 0 ? packets[0].ct : 0},
         {"turned",
          packet_count > 0 ? (uint32_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
-        {"intact", (uint32_t)intact_packets()},
-        {"spoilt", (uint32_t)spoilt},
+        {"intact", wire.counts.intact_packets},
+        {"spoilt", spoilt},
         {"latest_intact", fate_count > 0 && fates[fate_count - 1u].packet.intact},
         {"untold", (uint32_t)absolute(sim.counts.packets, fate_count)},
         {"unexplained", (uint32_t)absolute(heard.ended[SIM_LINK_CUT], spoilt)},
@@ -366,7 +349,7 @@ static bool is_fact(const char *word)
                                            wire.passed + heard.begun[SIM_LINK_INSERT])},
         {"new", (uint32_t)(size - marked)},
         {"faulty", sim_link_is_faulty(&wire)},
-        {"last_fault", (uint32_t)sim_link_last_fault_us(&wire)},
+        {"last_fault", (uint32_t)wire.last_fault_us},
     };
     return row_expects(word, facts) || is_count_of_faults(word, "begun.", heard.begun) ||
            is_count_of_faults(word, "ended.", heard.ended);
@@ -416,18 +399,13 @@ static void expect_bytes(const char *hex)
     taken += count;
 }
 
-static void expect_end(void)
-{
-    TEST_ASSERT_EQUAL_size_t(taken, size);
-    forget();
-}
-
 static void expect_frequency(unsigned chz)
 {
     char hex[30];
     (void)snprintf(hex, sizeof hex, "A55A0400000004%02X%02X0000", chz & 0xFF, chz >> 8);
     expect_bytes(hex);
-    expect_end();
+    TEST_ASSERT_EQUAL_size_t(taken, size);
+    forget();
 }
 
 static void expect_range_at(unsigned angle_q6, unsigned distance_mm)
@@ -469,12 +447,6 @@ static void keep(void)
     power_up();
 }
 
-static void expect_same(void)
-{
-    TEST_ASSERT_EQUAL_size_t(kept_size, size);
-    TEST_ASSERT_EQUAL_MEMORY(kept, stream, size);
-}
-
 /* Until then at once, without the wire, in portions of this size. */
 static void transmit_by(uint32_t portion)
 {
@@ -495,20 +467,6 @@ static void run_to_next(void)
     }
     TEST_ASSERT_EQUAL_size_t(before, size);
     run_until(next > now ? next : now + 1u);
-}
-
-static void run_into_a_packet(void)
-{
-    do {
-        run_ms(1);
-    } while (!wire.packet_open);
-}
-
-static void run_until_spoilt(void)
-{
-    do {
-        run_ms(1);
-    } while (spoil.count == 0);
 }
 
 /* Flips the first byte of a frame: LastCRC before a start packet, otherwise the header. */
@@ -537,13 +495,6 @@ static void plan_trouble(const char *text)
     spoil.count = 0;
 }
 
-static void befall(const char *name)
-{
-    uint32_t ms;
-    const sim_trouble_t trouble = sim_trouble_named(name, &ms);
-    sim_befall(&sim, trouble, ms, now);
-}
-
 /* "stall:100" */
 static void force(const char *text)
 {
@@ -560,16 +511,18 @@ static void send_raw(const char *hex)
 
 /* ">0D": a command; "<0DA5": bytes to the lidar; "+50": 50 ms pass; "~100": 100 us; "=A55A": the
  * next bytes, which come within 10 ms; "end": no more come; "got:600": the reply that a frequency
- * is set; "forget": what came before no longer counts; "@idle": the mode; "at:64:2300": angle and range; "ct:3:40": the CT byte of a packet in a turn;
- * "spoil:command:late700", "befalls:no-scans": trouble; "fails": power is lost so many microseconds
- * later, and the wire does not know; "force:stall:100": a fault of the wire; "calm"; "truth": what
- * it has reported about each packet is true; "keep": a new lidar, whose stream must become the
- * "same"; "by:7": it is taken at once, in portions of 7; settings and facts above. */
+ * is set; "forget": what came before no longer counts; "@idle": the mode; "at:64:2300": angle and
+ * range; "ct:3:40": the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans":
+ * trouble; "fails": power is lost so many microseconds later, and the wire does not know;
+ * "force:stall:100": a fault of the wire; "calm"; "truth": what it has reported about each packet
+ * is true; "keep": a new lidar, whose stream must become the "same"; "by:7": it is taken at once,
+ * in portions of 7; settings and facts above. */
 static void tell(char *word)
 {
     const uint32_t number = row_number(word);
     const char *const text = row_text(word);
     unsigned a, b;
+    uint32_t ms;
     if (word[0] == '>') {
         send((uint8_t)strtoul(&word[1], NULL, 16));
     } else if (word[0] == '<') {
@@ -590,11 +543,13 @@ static void tell(char *word)
     } else if (row_is(word, "spoil")) {
         plan_trouble(text);
     } else if (row_is(word, "befalls")) {
-        befall(text);
+        const sim_trouble_t trouble = sim_trouble_named(text, &ms);
+        sim_befall(&sim, trouble, ms, now);
     } else if (row_is(word, "force")) {
         force(text);
     } else if (row_is(word, "end")) {
-        expect_end();
+        TEST_ASSERT_EQUAL_size_t(taken, size);
+        forget();
     } else if (row_is(word, "forget")) {
         forget();
     } else if (row_is(word, "marks")) {
@@ -604,13 +559,18 @@ static void tell(char *word)
     } else if (row_is(word, "keep")) {
         keep();
     } else if (row_is(word, "same")) {
-        expect_same();
+        TEST_ASSERT_EQUAL_size_t(kept_size, size);
+        TEST_ASSERT_EQUAL_MEMORY(kept, stream, size);
     } else if (row_is(word, "step")) {
         run_to_next();
     } else if (row_is(word, "inside")) {
-        run_into_a_packet();
+        do {
+            run_ms(1);
+        } while (!wire.packet_open);
     } else if (row_is(word, "spoilt_once")) {
-        run_until_spoilt();
+        do {
+            run_ms(1);
+        } while (spoil.count == 0);
     } else if (row_is(word, "hit")) {
         hit_a_frame();
     } else if (row_is(word, "mark")) {
@@ -769,7 +729,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(last_crc_guards_the_ct_bytes_of_every_revolution, "scan:20 starts>100 wrong_crc:0"),
     ROW(last_crc_is_sometimes_aa, "frequency:1200 scan:120 aa>0 checksum_errors:0"),
     ROW(a_unit_without_ct_information_sends_neither_ct_nor_last_crc,
-        "ct_information:0 scan:10 gaps:0 point_cts:0 slowest>58 fastest<62"),
+        "ct_information:0 scan:10 gaps:0 point_cts:0 uneven<2"),
     ROW(flags_2_and_3_occur_as_often_as_configured,
         "flagged:100 scan:10 flag1:0 flag2>1699 flag2<2301 flag3>1699 flag3<2301"),
     ROW(a_byte_is_there_when_all_of_it_has_left,

@@ -376,7 +376,7 @@ bool watch_is_undisturbed_since(const bed_t *bed, uint64_t since_us)
     const watch_t *const watch = bed->watch;
 
     return !sim_link_is_faulty(&watch->link) && watch->trouble_us < since_us &&
-           sim_link_last_fault_us(&watch->link) < since_us;
+           watch->link.last_fault_us < since_us;
 }
 
 /* ---- A round of polls ---- */
