@@ -6,7 +6,8 @@
 #include "tmini_driver.h"
 
 /* As in tmini_command.c, which does not export them. */
-#define STEPS_MAX 79
+#define STEPS_MAX 64
+#define STEPS_IN_VAIN 15
 #define ASKS_MAX 30
 #define CHANCES_MAX 3
 #define PLAUSIBLE_CHZ_MAX 2000
@@ -299,14 +300,21 @@ static unsigned asks_max(uint8_t phase)
     return phase >= TMINI_PHASE_SCANNING ? CHANCES_MAX : ASKS_MAX;
 }
 
+/* Only a step that has been sent can be in vain. */
+static unsigned steps_max(uint8_t phase)
+{
+    const bool is_sent = phase == TMINI_PHASE_AWAITING || phase == TMINI_PHASE_UNCHANGED;
+    return is_sent ? STEPS_MAX : STEPS_MAX + STEPS_IN_VAIN;
+}
+
 static bool command_is_sound(const tmini_command_t *command)
 {
     const bool is_sending = (command->unsent & TMINI_UNSENT) != 0;
     return is_operation(command->operation) && unsent_is_sound(command->unsent) &&
            (!is_sending || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
-           command->steps <= STEPS_MAX && command->asks <= asks_max(command->phase) &&
-           command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
+           command->steps <= steps_max(command->phase) &&
+           command->asks <= asks_max(command->phase) && command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)

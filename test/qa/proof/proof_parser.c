@@ -6,7 +6,7 @@
  * sound, and accounts for every byte. The source is included, because the steps are private.
  *
  * tmini_parser_next_after() calls these steps in a loop. The proof checks one turn of this loop,
- * from any state that earlier turns may have left: see at_loop_head(). In the proof of classify(),
+ * from any state that earlier turns may have left: see at_loop_head(). In the proof of judge(),
  * any checksum may be right or wrong. */
 
 void at_loop_head(void);
@@ -15,7 +15,7 @@ void at_loop_head(void);
 
 #include "proof.h"
 
-enum verdict any_classify(tmini_parser_t *same, size_t unread);
+bool any_judge(tmini_parser_t *same, size_t unread);
 void any_skip(tmini_parser_t *same, size_t unread);
 
 static tmini_ring_t ring;
@@ -76,22 +76,21 @@ void prove_parser_await(void)
     CLAIM(parser.frame.size == before.frame.size);
 }
 
-/* classify() changes only kind and need, and counters and effort for a failed candidate; a complete
+/* judge() changes only kind and need, and counters and effort for a failed candidate; a complete
  * frame is as in the contract. */
-void prove_parser_classify(void)
+void prove_parser_judge(void)
 {
     begin();
     ASSUME(parser.frame.size == 0);
     const size_t unread = nondet_size();
     ASSUME(unread >= parser.need && unread <= tmini_ring_unread(&ring) && unread <= ring.window);
-    const enum verdict verdict = classify(&parser, unread);
+    const bool may_be_frame = judge(&parser, unread);
     CLAIM(is_accounted_for());
     CLAIM(same_expectations(&before, &parser) && parser.frame.size == 0);
     CLAIM(parser_is_sound(&parser));
-    CLAIM(verdict != INCOMPLETE || unread < parser.need);
-    CLAIM(verdict != COMPLETE || (unread >= parser.need && parser.kind != TMINI_FRAME_NONE));
+    CLAIM(!may_be_frame || unread < parser.need || parser.kind != TMINI_FRAME_NONE);
     CLAIM(parser.effort == before.effort ||
-          (verdict == NOT_A_FRAME && parser.effort == (uint16_t)(before.effort + parser.need)));
+          (!may_be_frame && parser.effort == (uint16_t)(before.effort + parser.need)));
     CLAIM(parser.frame.gap == before.frame.gap);
 }
 
@@ -227,24 +226,23 @@ void prove_parser_abandon(void)
 
 /* ---- One turn of the loop of tmini_parser_next_after() ---- */
 
-/* These replace classify() and skip(): they check how they are called, and do anything that is
+/* These replace judge() and skip(): they check how they are called, and do anything that is
  * proved above. */
 
-enum verdict any_classify(tmini_parser_t *same, size_t unread)
+bool any_judge(tmini_parser_t *same, size_t unread)
 {
     const tmini_parser_t was = parser;
-    const enum verdict verdict = (enum verdict)(nondet_byte() % 3);
+    const bool may_be_frame = any_bool();
     CLAIM(same == &parser && parser.frame.size == 0);
     CLAIM(unread >= parser.need && unread <= ring.window && unread <= tmini_ring_unread(&ring));
     parser = any_parser(&ring);
     ASSUME(same_expectations(&was, &parser) && parser.awaiting == was.awaiting);
     ASSUME(parser.frame.size == 0 && parser.frame.gap == was.frame.gap);
-    ASSUME(verdict != INCOMPLETE || unread < parser.need);
-    ASSUME(verdict != COMPLETE || (unread >= parser.need && parser.kind != TMINI_FRAME_NONE));
+    ASSUME(!may_be_frame || unread < parser.need || parser.kind != TMINI_FRAME_NONE);
     ASSUME(parser.effort == was.effort ||
-           (verdict == NOT_A_FRAME && parser.effort == (uint16_t)(was.effort + parser.need)));
+           (!may_be_frame && parser.effort == (uint16_t)(was.effort + parser.need)));
     parser.counters = was.counters;
-    return verdict;
+    return may_be_frame;
 }
 
 void any_skip(tmini_parser_t *same, size_t unread)
