@@ -11,11 +11,10 @@
 #       -DCMAKE_TOOLCHAIN_FILE=test/cmake/toolchains/avr-atmega2560.cmake
 #   cmake --build build-avr && ctest --test-dir build-avr
 
-# tmini_add_machine(MACHINE TOOLCHAIN file BUILD_TYPE type PROGRAMS program …). A program may
-# be a list of alternatives separated by "|". A high COST makes ctest start these long tests first.
-function(tmini_add_machine machine)
-    cmake_parse_arguments(arg "" "TOOLCHAIN;BUILD_TYPE" "PROGRAMS" ${ARGN})
-    tmini_missing_programs(missing ${arg_PROGRAMS})
+# tmini_add_machine(MACHINE TOOLCHAIN BUILD_TYPE PROGRAM …). A program may be a list of alternatives
+# separated by "|". A high COST makes ctest start these long tests first.
+function(tmini_add_machine machine toolchain build_type)
+    tmini_missing_programs(missing ${ARGN})
     if(missing)
         tmini_add_skipped_test(${machine} ${machine} "not installed: ${missing}" ALL)
         return()
@@ -25,24 +24,15 @@ function(tmini_add_machine machine)
             ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/${machine}
             --build-generator ${CMAKE_GENERATOR} --build-noclean --build-target tests
             --build-options -DTMINI_BUILD_TESTS=ON -DTMINI_BUILD_EXAMPLES=OFF
-            -DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/test/cmake/toolchains/${arg_TOOLCHAIN}
-            -DCMAKE_BUILD_TYPE=${arg_BUILD_TYPE} -DCMOCK_ROOT=${TMINI_CMOCK_DIR}
+            -DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/test/cmake/toolchains/${toolchain}.cmake
+            -DCMAKE_BUILD_TYPE=${build_type} -DCMOCK_ROOT=${TMINI_CMOCK_DIR}
             --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error
         PROPERTIES COST 100)
 endfunction()
 
-tmini_add_machine(bigendian
-    TOOLCHAIN powerpc-linux.cmake BUILD_TYPE RelWithDebInfo
-    PROGRAMS powerpc-linux-gnu-gcc qemu-ppc|qemu-ppc-static)
-tmini_add_machine(int16
-    TOOLCHAIN avr-atmega2560.cmake BUILD_TYPE MinSizeRel
-    PROGRAMS avr-gcc simavr)
-tmini_add_machine(cortex-m4
-    TOOLCHAIN cortex-m4.cmake BUILD_TYPE MinSizeRel
-    PROGRAMS arm-none-eabi-gcc qemu-system-arm)
-tmini_add_machine(cortex-m0
-    TOOLCHAIN cortex-m0.cmake BUILD_TYPE MinSizeRel
-    PROGRAMS arm-none-eabi-gcc qemu-system-arm)
-tmini_add_machine(rv32imc
-    TOOLCHAIN rv32imc.cmake BUILD_TYPE MinSizeRel
-    PROGRAMS riscv64-unknown-elf-gcc qemu-system-riscv32)
+tmini_add_machine(bigendian powerpc-linux RelWithDebInfo
+    powerpc-linux-gnu-gcc qemu-ppc|qemu-ppc-static)
+tmini_add_machine(int16 avr-atmega2560 MinSizeRel avr-gcc simavr)
+tmini_add_machine(cortex-m4 cortex-m4 MinSizeRel arm-none-eabi-gcc qemu-system-arm)
+tmini_add_machine(cortex-m0 cortex-m0 MinSizeRel arm-none-eabi-gcc qemu-system-arm)
+tmini_add_machine(rv32imc rv32imc MinSizeRel riscv64-unknown-elf-gcc qemu-system-riscv32)

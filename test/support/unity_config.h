@@ -10,16 +10,20 @@
 #include <limits.h>
 #include <stdint.h>
 
+/* Of an emulated controller (test/target): prints a character; what comes before the first and after
+ * the last. */
+void board_put(char character);
+void board_start(void);
+void board_stop(void);
+
 /* 64-bit assertions also on machines with narrower registers. */
 #define UNITY_SUPPORT_64
 
 #ifdef __AVR__
 
-#include "../target/avr_board.h"
-
-#define UNITY_OUTPUT_START() avr_board_start()
-#define UNITY_OUTPUT_CHAR(c) avr_board_put((char)(c))
-#define UNITY_OUTPUT_COMPLETE() avr_board_stop()
+#define UNITY_OUTPUT_START() board_start()
+#define UNITY_OUTPUT_CHAR(c) board_put((char)(c))
+#define UNITY_OUTPUT_COMPLETE() board_stop()
 
 /* 8 KB of RAM hold everything, including texts, so CMock's memory is small. */
 #define CMOCK_MEM_STATIC
@@ -32,9 +36,7 @@
 
 #ifdef TMINI_TEST_SEMIHOSTING
 
-#include "semihosting.h"
-
-#define UNITY_OUTPUT_CHAR(c) semihosting_put((char)(c))
+#define UNITY_OUTPUT_CHAR(c) board_put((char)(c))
 
 #endif
 

@@ -3,7 +3,7 @@
 
 /* ATmega2560: prints through UART 0. Sleeping with interrupts disabled ends the simulation. */
 
-#include "avr_board.h"
+#include "unity_config.h"
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -32,11 +32,12 @@ static bool guard_is_intact(void)
 static void put_text(const char *text)
 {
     while (*text != '\0') {
-        avr_board_put(*text++);
+        board_put(*text++);
     }
 }
 
-void avr_board_start(void)
+/* Prepares the UART, and fills some bytes after the static data with a guard pattern. */
+void board_start(void)
 {
     uint8_t *const guard = &__heap_start;
     for (uint8_t i = 0; i < GUARD_SIZE; i++) {
@@ -46,13 +47,15 @@ void avr_board_start(void)
     UCSR0B = _BV(TXEN0);
 }
 
-void avr_board_put(char character)
+/* The simulator prints what UART 0 sends. */
+void board_put(char character)
 {
     loop_until_bit_is_set(UCSR0A, UDRE0);
     UDR0 = (uint8_t)character;
 }
 
-void avr_board_stop(void)
+/* Reports a stack that has overwritten the guard pattern, and ends the simulation. */
+void board_stop(void)
 {
     if (!guard_is_intact()) {
         put_text("STACK OVERFLOW\n");

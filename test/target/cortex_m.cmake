@@ -9,7 +9,7 @@ set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_C_FLAGS_INIT "-mcpu=${CORTEX_M} -mthumb -ffunction-sections -fdata-sections \
--DTMINI_TEST_SEMIHOSTING -I\"${CMAKE_CURRENT_LIST_DIR}\"")
+-DTMINI_TEST_SEMIHOSTING")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--specs=nano.specs --specs=nosys.specs -nostartfiles \
 -Wl,--gc-sections -Wl,--defsym=RAM_START=${CORTEX_M_RAM} \
 -T\"${CMAKE_CURRENT_LIST_DIR}/cortex_m.ld\"")

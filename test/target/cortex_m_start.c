@@ -4,7 +4,7 @@
 /* Start-up of unit tests on an emulated Cortex-M: vector table, main(), end by semihosting. Nothing
  * is copied or cleared: the emulator loads initialised data into RAM, and the rest is zero. */
 
-#include "semihosting.h"
+#include "unity_config.h"
 
 #include <stdint.h>
 
@@ -25,12 +25,13 @@ static void ask(uint32_t operation, uint32_t argument)
     __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
 }
 
-void semihosting_put(char character)
+void board_put(char character)
 {
     ask(SYS_WRITEC, (uint32_t)&character);
 }
 
-void semihosting_exit(int status)
+/* Ends the emulator with status 0 or 1. */
+static void end(int status)
 {
     ask(SYS_EXIT, status == 0 ? APPLICATION_EXIT : RUN_TIME_ERROR);
     for (;;) {
@@ -41,7 +42,7 @@ void cortex_m_reset(void);
 
 void cortex_m_reset(void)
 {
-    semihosting_exit(main());
+    end(main());
 }
 
 /* Any exception, for example an unaligned access, a wild pointer or a stack overflow. */
@@ -49,9 +50,9 @@ static void fault(void)
 {
     static const char text[] = "PROCESSOR FAULT\n";
     for (const char *character = text; *character != '\0'; character++) {
-        semihosting_put(*character);
+        board_put(*character);
     }
-    semihosting_exit(1);
+    end(1);
 }
 
 /* Initial stack pointer, reset, and the processor's other exceptions. */
