@@ -26,38 +26,25 @@ if(TARGET test_line)
     target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
 
-# The library is compiled again here, with an atomic header that calls the test at each access of an
-# index.
+# tmini_add_driver_again(TEST DEFINITION …): the library is compiled again for it, with these.
 file(GLOB library_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/src/*.c)
-tmini_add_unit_test(test_interrupts
-    SOURCES test_interrupts.c ../support/tale.c ../support/rig.c ../support/invariants.c
-        ${library_sources}
-    LIBRARIES tmini_test_rows tmini_test_receiver)
-if(TARGET test_interrupts)
-    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-        target_compile_definitions(test_interrupts PRIVATE TMINI_WORD_ALIGNMENT=4u)
+function(tmini_add_driver_again test)
+    tmini_add_unit_test(${test}
+        SOURCES ${test}.c ../support/tale.c ../support/rig.c ../support/invariants.c
+            ${library_sources}
+        LIBRARIES tmini_test_rows tmini_test_receiver)
+    if(TARGET ${test})
+        target_compile_definitions(${test} PRIVATE ${ARGN})
+        target_include_directories(${test} PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
     endif()
-    target_compile_definitions(test_interrupts
-        PRIVATE TMINI_ATOMIC_HEADER="interrupting_atomic.h")
-    target_include_directories(test_interrupts PRIVATE ../support ${PROJECT_SOURCE_DIR}/lib/src)
-endif()
+endfunction()
 
-# The library is compiled again without CT information.
-tmini_add_unit_test(test_no_ct
-    SOURCES test_no_ct.c ../support/tale.c ../support/rig.c ../support/invariants.c
-        ${library_sources}
-    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
-if(TARGET test_no_ct)
-    target_compile_definitions(test_no_ct PRIVATE TMINI_NO_CT)
-    target_include_directories(test_no_ct PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
+# With an atomic header that calls the test at each access of an index.
+set(interrupting TMINI_ATOMIC_HEADER="interrupting_atomic.h")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND interrupting TMINI_WORD_ALIGNMENT=4u)
 endif()
-
-# The library is compiled again with the effort of Arduino's AVR.
-tmini_add_unit_test(test_small_effort
-    SOURCES test_small_effort.c ../support/tale.c ../support/rig.c ../support/invariants.c
-        ${library_sources}
-    LIBRARIES tmini_test_rows tmini_test_support NOT_ON int16)
-if(TARGET test_small_effort)
-    target_compile_definitions(test_small_effort PRIVATE ARDUINO_ARCH_AVR)
-    target_include_directories(test_small_effort PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
-endif()
+tmini_add_driver_again(test_interrupts ${interrupting})
+tmini_add_driver_again(test_no_ct TMINI_NO_CT)
+# With the effort of Arduino's AVR.
+tmini_add_driver_again(test_small_effort ARDUINO_ARCH_AVR)
