@@ -178,7 +178,7 @@ typedef struct {
 
 /* The places of one run, and the next choice among them: an event and what spoils it. */
 typedef struct {
-    place_t *places;
+    place_t places[POINTS_MAX];
     uint32_t count;
     uint32_t place;
     uint32_t event;
@@ -370,17 +370,6 @@ static int replay(int count, char **texts)
     return failures > 0 ? 1 : 0;
 }
 
-static void prepare_trails(uint32_t depth)
-{
-    for (uint32_t i = 0; i < depth; i++) {
-        trails[i].places = malloc(POINTS_MAX * sizeof(place_t));
-        if (trails[i].places == NULL) {
-            printf("no memory\n");
-            exit(2);
-        }
-    }
-}
-
 /* The number after this option, if the option comes next. */
 static uint32_t option(int argc, char **argv, int *next, const char *name, uint32_t otherwise)
 {
@@ -405,7 +394,6 @@ int main(int argc, char **argv)
         printf("1 to %u troubles, every from 1\n", DEPTH_MAX);
         return 2;
     }
-    prepare_trails(depth);
     for (size_t i = 0; first >= argc && i < STORIES; i++) {
         is_right = tell(&stories[i], depth) && is_right;
     }
