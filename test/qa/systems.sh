@@ -11,8 +11,7 @@
 #
 # Needs root, debootstrap, 12 GB of disk space, and a quarter of an hour per system. All files are
 # in build-systems/. The logs are NAME.demo.log and NAME.tests.log. A system is deleted after its
-# run, unless TMINI_KEEP=yes; its packages are kept in cache/ for the next run. TMINI_DEBIAN_MIRROR
-# and TMINI_UBUNTU_MIRROR choose other mirrors.
+# run; its packages are kept in cache/ for the next one.
 # Exit status: 0 all green, 1 not, 2 wrong usage, 77 it cannot be done here.
 
 set -eu
@@ -24,7 +23,7 @@ folder="/home/user/Ein Ordner mit Umläuten and spaces and a rather long name/tm
 table=$work/table.md
 
 usage() {
-    sed -n '5,16s/^# \{0,1\}//p' "$0" >&2
+    sed -n '5,15s/^# \{0,1\}//p' "$0" >&2
     exit 2
 }
 
@@ -39,7 +38,7 @@ mirror_of() {
 # describe NAME: sets the variables for debootstrap and apt.
 describe() {
     architecture=amd64 components=main script="" personality=linux64
-    mirror=${TMINI_DEBIAN_MIRROR:-$(mirror_of debian)}
+    mirror=$(mirror_of debian)
     case $1 in
         debian-12) suite=bookworm ;;
         debian-13) suite=trixie ;;
@@ -47,7 +46,7 @@ describe() {
         ubuntu-24.04)
             # debootstrap uses this script for all Ubuntu releases since 2007.
             suite=noble components="main universe" script=gutsy
-            mirror=${TMINI_UBUNTU_MIRROR:-$(mirror_of ubuntu)}
+            mirror=$(mirror_of ubuntu)
             ;;
         *) usage ;;
     esac
@@ -147,7 +146,7 @@ run_system() {
         "$(count '\*\*\*\(Failed\|Timeout\|Not Run\|Exception\)' "$work/$1.tests.log") |" \
         "$(count '\*\*\*Skipped' "$work/$1.tests.log") | $(reasons "$1") |" \
         "$((made - begin)) + $((shown - made)) + $((end - shown)) s |" >>"$table"
-    [ "${TMINI_KEEP:-no}" = yes ] || rm -rf "$system"
+    rm -rf "$system"
     [ "$demo" = green ] && [ "$tests" -eq 0 ]
 }
 

@@ -4,7 +4,6 @@
 #include "irq_lines.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 
 #define MAIN_PROGRAM UINT16_MAX /* A priority below all others. */
 #define PLACES_SKIPPED 15u
@@ -79,16 +78,7 @@ bool irq_is_in_handler(void)
     return irq.level != MAIN_PROGRAM;
 }
 
-static bool is_every_place_wanted(void)
-{
-#ifdef __AVR__ /* Its C library has no getenv(). */
-    return false;
-#else
-    return getenv("TMINI_EVERY_MOMENT") != NULL;
-#endif
-}
-
 uint32_t irq_next_place(random_t *random, uint32_t place)
 {
-    return place + 1 + (is_every_place_wanted() ? 0 : random_below(random, PLACES_SKIPPED));
+    return place + 1 + random_below(random, PLACES_SKIPPED);
 }

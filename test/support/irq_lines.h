@@ -63,8 +63,7 @@ void irq_happen_after(uint32_t accesses, void (*event)(void));
 /* Whether a handler runs, so that models can report calls that only the main program may make. */
 bool irq_is_in_handler(void);
 
-/* The access to try for an event after the access `place`: the next one if the environment has
- * TMINI_EVERY_MOMENT, otherwise a random one, on average 8 accesses later. */
+/* The access to try for an event after the access `place`: on average 8 accesses later. */
 uint32_t irq_next_place(random_t *random, uint32_t place);
 
 #endif

@@ -7,7 +7,6 @@
 #
 #   test/qa/fuzz/run.sh [SECONDS]      runs each target for this time (60 by default)
 #   test/qa/fuzz/run.sh --keep         writes the collected inputs, minimised, to corpus_….txt
-#   test/qa/fuzz/run.sh --coverage     prints how much of lib/ the inputs in corpus_….txt reach
 #
 # An input that fails is a file in build-fuzz/: give it to build-fuzz/fuzz_… to reproduce the
 # failure. Collected inputs stay in build-fuzz/corpus_…, where the next run continues. The first run
@@ -21,41 +20,29 @@ simulator=$root/test/simulator
 system=$root/test/system
 unity=${TMINI_UNITY_DIR:-/usr/share/cmock/vendor/unity}/src
 build=$root/build-fuzz
-compiler=${TMINI_FUZZ_CC:-clang}
 action=${1:-60}
 
 if ! echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
-    "$compiler" -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
-    echo "SKIPPED: $compiler cannot build fuzzers (packages clang, libclang-rt-…-dev)"
+    clang -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
+    echo "SKIPPED: clang cannot build fuzzers (packages clang, libclang-rt-…-dev)"
     exit 0
 fi
 
-targets="fuzz_parser fuzz_driver fuzz_scans"
-
-# sources TARGET: prints its source files, one per line.
-sources() {
-    printf '%s\n' "$root/test/qa/fuzz/$1.c" "$support/invariants.c" "$support/encoder.c" \
-        "$support/reference_decoder.c" "$support/random.c" "$root"/lib/src/*.c
-    case $1 in
-        fuzz_parser) printf '%s\n' "$support/receiver.c" "$support/reference_scans.c" \
-            "$unity/unity.c" ;;
-        fuzz_scans) printf '%s\n' "$system/bed.c" "$system/watch.c" "$simulator"/sim*.c \
-            "$simulator/scene.c" "$simulator/link.c" ;;
-    esac
-}
-
-# compile PROGRAM TARGET FLAG…: compiles the target to $build/PROGRAM.
+# compile TARGET: to $build/TARGET.
 compile() {
-    program=$1
-    target=$2
-    shift 2
+    target=$1
     case $target in
-        fuzz_parser) set -- -DUNITY_INCLUDE_CONFIG_H -I"$unity" "$@" ;;
-        fuzz_scans) set -- '-DTMINI_ATOMIC_HEADER="interrupting_atomic.h"' "$@" ;;
+        fuzz_parser) set -- -DUNITY_INCLUDE_CONFIG_H -I"$unity" "$unity/unity.c" \
+            "$support/receiver.c" "$support/reference_scans.c" ;;
+        fuzz_scans) set -- '-DTMINI_ATOMIC_HEADER="interrupting_atomic.h"' "$system/bed.c" \
+            "$system/watch.c" "$simulator"/sim*.c "$simulator/scene.c" "$simulator/link.c" ;;
+        *) set -- ;;
     esac
-    sources "$target" | tr '\n' '\0' | xargs -0 "$compiler" -std=c99 -g -O1 -Wall -Wextra -Werror \
-        "$@" -I"$root/lib/include" -I"$root/lib/src" -I"$support" -I"$simulator" -I"$system" \
-        -o "$build/$program"
+    clang -std=c99 -g -O1 -Wall -Wextra -Werror -fsanitize=fuzzer,address,undefined \
+        -fno-sanitize-recover=all -I"$root/lib/include" -I"$root/lib/src" -I"$support" \
+        -I"$simulator" -I"$system" "$@" "$root/test/qa/fuzz/$target.c" "$root"/lib/src/*.c \
+        "$support/invariants.c" "$support/encoder.c" "$support/reference_decoder.c" \
+        "$support/random.c" -o "$build/$target"
 }
 
 # unpack TARGET: writes the inputs in corpus_TARGET.txt to its corpus folder.
@@ -70,7 +57,7 @@ unpack() {
 }
 
 fuzz() {
-    compile "$1" "$1" -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
+    compile "$1"
     unpack "$1"
     status=0
     (cd "$build" && exec "./$1" -max_total_time="$action" -max_len=4096 \
@@ -92,25 +79,9 @@ keep() {
     wc -lc "$root/test/qa/fuzz/corpus_$1.txt"
 }
 
-# cover TARGET: runs the kept inputs in a program with coverage counters, without sanitizers.
-cover() {
-    compile "cover_$1" "$1" -fsanitize=fuzzer -fprofile-instr-generate -fcoverage-mapping
-    rm -rf "$build/corpus_$1"
-    unpack "$1"
-    LLVM_PROFILE_FILE=$build/$1.profraw "$build/cover_$1" "$build/corpus_$1"/* >"$build/$1.log" 2>&1
-}
-
 mkdir -p "$build"
-case $action in
-    --keep) each=keep ;;
-    --coverage) each=cover ;;
-    *) each=fuzz ;;
-esac
-for target in $targets; do
-    "$each" "$target"
+each=fuzz
+[ "$action" != --keep ] || each=keep
+for one in fuzz_parser fuzz_driver fuzz_scans; do
+    "$each" "$one"
 done
-if [ "$each" = cover ]; then
-    llvm-profdata merge -o "$build/profile" "$build"/fuzz_*.profraw
-    llvm-cov report "$build/cover_fuzz_driver" -object "$build/cover_fuzz_parser" \
-        -object "$build/cover_fuzz_scans" -instr-profile="$build/profile" "$root"/lib
-fi
