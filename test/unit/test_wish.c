@@ -104,7 +104,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_stop_during_a_stop_takes_back_what_was_to_follow,
         "stop >65 start @STARTING stop @STOPPING !FAILED ?ABORTED +50 !STOPPED @IDLE"),
     ROW(a_stop_during_a_stop_changes_nothing, "stop >65 +20 stop +30 !STOPPED"),
-    ROW(a_start_that_has_not_been_polled_is_not_reported_after_a_stop,
+    ROW(a_packet_that_waits_when_the_lidar_is_stopped_brings_no_scan,
         "idle start >0D <600 >60 <scan <S <S !STARTED stop >65 +50 !STOPPED"),
     ROW(a_question_after_a_stop_leaves_the_report_of_what_the_stop_ended,
         "idle start >0D stop >65 info !FAILED ?ABORTED +50 !STOPPED >90 <info !INFO"),
