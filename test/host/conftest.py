@@ -184,8 +184,7 @@ class Lidar(Program):
         options = list(options)
         options = options if "--tcp" in options else ["--pty", *options]
         options = options if "--log" in options else [*options, "--log", log]
-        # An input from which nothing comes, and which is never one of its clients.
-        super().__init__(clock, [TMINI_SIM, *options], environment, stdin=subprocess.PIPE)
+        super().__init__(clock, [TMINI_SIM, *options], environment)
         self.log_path = Path(log)
         self.wait_until(lambda: "\n" in self.out)
         line = self.out.split("\n")[0]

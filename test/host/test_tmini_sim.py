@@ -106,14 +106,12 @@ def test_the_room_is_as_described(sim):
 
 
 @pytest.mark.parametrize("options", [[], ["--tcp", "0"]], ids=["pty", "socket"])
-def test_clients_are_served_one_after_another_without_echo(lidar, client, clock, options):
+def test_clients_are_served_one_after_another_without_echo(lidar, client, options):
     device = lidar(*options)
     for _ in range(3):
-        begun = clock.now_ms()
         one = client(device.port)
         one.ask(ASK_INFORMATION, INFORMATION)
         one.ask(ASK_FREQUENCY, SIX_HERTZ)
-        assert clock.now_ms() - begun < 100
         assert one.receive(1, 100) == b""
         one.close()
     assert device.end(signal.SIGTERM).status == 0

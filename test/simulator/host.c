@@ -83,7 +83,7 @@ static bool open_master(host_t *host)
 
 bool host_open_pty(host_t *host)
 {
-    *host = (host_t){.update = update_pty, .listener = -1, .fd = -1};
+    *host = (host_t){.update = update_pty, .listener = -1};
     return open_master(host) && prepare_slave(host->address);
 }
 
@@ -150,7 +150,7 @@ static bool listen_on(host_t *host, uint16_t port)
 
 bool host_open_tcp(host_t *host, uint16_t port)
 {
-    *host = (host_t){.update = update_tcp, .listener = -1, .fd = -1};
+    *host = (host_t){.update = update_tcp, .fd = -1};
     return listen_on(host, port);
 }
 
