@@ -23,12 +23,9 @@ from platformio.dependencies import get_core_dependencies
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-# A platform for each that a project names. Programs are built for this computer: for `espressif32` over the tests'
+# A platform for each that a project names. Programs are built for this computer: with the framework, over the tests'
 # stand-in for Arduino (arduino.py).
-PLATFORMS = {
-    "native": {},
-    "espressif32": {"frameworks": {"arduino": {"script": "builder/arduino.py"}}},
-}
+PLATFORMS = ("native", "espressif32")
 BOARD = {"name": "ESP32 dev module", "vendor": "Espressif", "url": "", "frameworks": ["arduino"],
          "build": {"mcu": "esp32", "f_cpu": "240000000L"},
          "upload": {"maximum_ram_size": 1 << 18, "maximum_size": 1 << 20}}
@@ -48,56 +45,44 @@ sys.exit(main())
 """
 
 
-def write(path, text):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def describe(folder, kind, name, version):
-    """Writes the file that PlatformIO stores in each package that it has installed."""
+def install(folder, kind, name, version, **files):
+    """Writes a package of PlatformIO, with the file that it stores in each that it has installed."""
     spec = {"owner": "platformio", "id": None, "name": name, "requirements": None, "uri": None}
-    about = {"type": kind, "name": name, "version": version, "spec": spec}
-    write(os.path.join(folder, ".piopm"), json.dumps(about))
+    about = {"name": name, "version": version}
+    files |= {".piopm": {"type": kind, "spec": spec, **about},
+              f"{'package' if kind == 'tool' else kind}.json": {**about, **files.pop("manifest", {})}}
+    for path, content in files.items():
+        path = os.path.join(folder, path)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(content if isinstance(content, str) else json.dumps(content))
 
 
 def install_scons(core):
     """Installs the Python package scons in place of the tool that PlatformIO would download."""
-    version = get_core_dependencies()["tool-scons"].strip("~^=")
-    folder = os.path.join(core, "packages", "tool-scons")
-    os.makedirs(folder)
-    write(os.path.join(folder, "scons.py"), SCONS.format(os.path.dirname(SCons.__path__[0])))
-    write(os.path.join(folder, "package.json"),
-          json.dumps({"name": "tool-scons", "version": version}))
-    describe(folder, "tool", "tool-scons", version)
+    install(os.path.join(core, "packages", "tool-scons"), "tool", "tool-scons",
+            get_core_dependencies()["tool-scons"].strip("~^="),
+            **{"scons.py": SCONS.format(os.path.dirname(SCons.__path__[0]))})
 
 
 def install_platforms(core):
-    for name, more in PLATFORMS.items():
-        folder = os.path.join(core, "platforms", name)
-        for part in ("builder", "boards"):
-            os.makedirs(os.path.join(folder, part))
-        write(os.path.join(folder, "builder", "main.py"), BUILDER)
-        shutil.copy(os.path.join(HERE, "arduino.py"), os.path.join(folder, "builder"))
-        write(os.path.join(folder, "boards", "esp32dev.json"), json.dumps(BOARD))
-        write(os.path.join(folder, "platform.json"),
-              json.dumps({"name": name, "title": name, "description": name, "license": "MIT",
-                          "engines": {"platformio": "^6"}, "version": "1.0.0", **more}))
-        describe(folder, "platform", name, "1.0.0")
+    with open(os.path.join(HERE, "arduino.py"), encoding="utf-8") as file:
+        framework = file.read()
+    for name in PLATFORMS:
+        install(os.path.join(core, "platforms", name), "platform", name, "1.0.0",
+                manifest={"title": name, "description": name, "license": "MIT", "engines": {"platformio": "^6"},
+                          "frameworks": {"arduino": {"script": "builder/arduino.py"}}},
+                **{"builder/main.py": BUILDER, "builder/arduino.py": framework, "boards/esp32dev.json": BOARD})
 
 
 def environment(root, work):
     core = os.path.join(work, "core")
     install_scons(core)
     install_platforms(core)
-    return dict(
-        os.environ,
-        PLATFORMIO_CORE_DIR=core,
-        PLATFORMIO_WORKSPACE_DIR=os.path.join(work, "workspace"),
-        PLATFORMIO_SETTING_ENABLE_TELEMETRY="no",
-        PLATFORMIO_SETTING_CHECK_PLATFORMIO_INTERVAL="9999",
-        PLATFORMIO_SETTING_CHECK_PRUNE_SYSTEM_THRESHOLD="0",
-        TMINI_TESTS=os.path.join(root, "test"),
-    )
+    settings = {"ENABLE_TELEMETRY": "no", "CHECK_PLATFORMIO_INTERVAL": "9999", "CHECK_PRUNE_SYSTEM_THRESHOLD": "0"}
+    return {**os.environ, "PLATFORMIO_CORE_DIR": core, "PLATFORMIO_WORKSPACE_DIR": os.path.join(work, "workspace"),
+            "TMINI_TESTS": os.path.join(root, "test"),
+            **{f"PLATFORMIO_SETTING_{name}": value for name, value in settings.items()}}
 
 
 def build(project, name, env):
@@ -129,16 +114,11 @@ def names_in(archive):
 
 
 def check_archive(archive, work, env):
-    folder = unpack(archive, os.path.join(work, "unpacked"))
+    folder = os.path.join(work, "unpacked")
+    shutil.unpack_archive(archive, folder)
     ours, theirs = names_in(archive), names_in(pack(folder, work))
     assert ours == theirs, sorted(set(ours) ^ set(theirs))
     check_native(folder, env)
-
-
-def unpack(archive, folder):
-    with tarfile.open(archive) as file:
-        file.extractall(folder)
-    return folder
 
 
 def main():

@@ -56,25 +56,16 @@ extern tmini_stm32_usart_t port;
 extern DMA_TypeDef *const DMA2;
 extern DMA_Stream_TypeDef *const DMA2_Stream2;
 
-extern const uint32_t LL_AHB1_GRP1_PERIPH_DMA2;
-extern const uint32_t LL_DMA_STREAM_2;
-extern const uint32_t LL_DMA_CHANNEL_4;
-extern const uint32_t LL_DMA_DIRECTION_PERIPH_TO_MEMORY;
-extern const uint32_t LL_DMA_MODE_CIRCULAR;
-extern const uint32_t LL_DMA_MEMORY_INCREMENT;
-extern const uint32_t LL_DMA_PDATAALIGN_BYTE;
-extern const uint32_t LL_DMA_MDATAALIGN_BYTE;
+extern const uint32_t LL_AHB1_GRP1_PERIPH_DMA2, LL_DMA_STREAM_2, LL_DMA_CHANNEL_4,
+    LL_DMA_DIRECTION_PERIPH_TO_MEMORY, LL_DMA_MODE_CIRCULAR, LL_DMA_MEMORY_INCREMENT,
+    LL_DMA_PDATAALIGN_BYTE, LL_DMA_MDATAALIGN_BYTE;
 
 void LL_AHB1_GRP1_EnableClock(uint32_t periphs);
-void LL_DMA_SetChannelSelection(DMA_TypeDef *dma, uint32_t stream, uint32_t channel);
-void LL_DMA_ConfigTransfer(DMA_TypeDef *dma, uint32_t stream, uint32_t configuration);
-void LL_DMA_DisableFifoMode(DMA_TypeDef *dma, uint32_t stream);
-void LL_DMA_SetPeriphAddress(DMA_TypeDef *dma, uint32_t stream, uint32_t address);
-void LL_DMA_SetMemoryAddress(DMA_TypeDef *dma, uint32_t stream, uint32_t address);
-void LL_DMA_SetDataLength(DMA_TypeDef *dma, uint32_t stream, uint32_t length);
-void LL_DMA_EnableIT_HT(DMA_TypeDef *dma, uint32_t stream);
-void LL_DMA_EnableIT_TC(DMA_TypeDef *dma, uint32_t stream);
-void LL_DMA_EnableStream(DMA_TypeDef *dma, uint32_t stream);
+typedef void ll_dma_switch_t(DMA_TypeDef *dma, uint32_t stream);
+ll_dma_switch_t LL_DMA_DisableFifoMode, LL_DMA_EnableIT_HT, LL_DMA_EnableIT_TC, LL_DMA_EnableStream;
+typedef void ll_dma_set_t(DMA_TypeDef *dma, uint32_t stream, uint32_t value);
+ll_dma_set_t LL_DMA_SetChannelSelection, LL_DMA_ConfigTransfer, LL_DMA_SetPeriphAddress,
+    LL_DMA_SetMemoryAddress, LL_DMA_SetDataLength;
 uint32_t LL_DMA_IsActiveFlag_HT2(const DMA_TypeDef *dma);
 uint32_t LL_DMA_IsActiveFlag_TC2(const DMA_TypeDef *dma);
 void LL_DMA_ClearFlag_HT2(DMA_TypeDef *dma);
