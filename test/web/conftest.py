@@ -74,10 +74,10 @@ class Page(webdriver.Chrome):
             self.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", {"identifier": self.script})
         self.script = self.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
 
-    def resize(self, width, height):
-        """Sets the page's size, which may be narrower than a window."""
+    def resize(self, width, height, ratio=1):
+        """Sets the page's size, which may be narrower than a window, and the screen's pixels for each of the page's."""
         self.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                             {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+                             {"width": width, "height": height, "deviceScaleFactor": ratio, "mobile": False})
 
     def prefer(self, scheme):
         """The system's colours: light or dark."""

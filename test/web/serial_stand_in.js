@@ -8,8 +8,7 @@
 //     bench.plug()  bench.unplug()         the cable
 //     bench.choice = 'none'                the user closes the list of ports
 //     bench.opening = 'NetworkError'       open() fails with this error
-//     bench.line = 'good' | 'dead' | 'garbled' | 'deaf' |
-//                 'held' (bytes come when it is good again) |
+//     bench.line = 'good' | 'garbled' | 'held' (bytes come when it is good again) |
 //                 'late' (bytes come only every second time)
 //     bench.lineError('ParityError')       the stream ends with this error, the port stays open
 //     bench.writeError()                   the next write fails, the port stays open
@@ -48,7 +47,7 @@ class Device {
     }
 
     receive(bytes) {
-        if (this.#plugged && bench.line !== 'deaf' && bench.answers(bytes[1])) {
+        if (this.#plugged && bench.answers(bytes[1])) {
             this.#transferred(bytes.length).set(bytes);
             this.#library.simulation_write(bytes.length, this.#now);
         }
@@ -61,9 +60,6 @@ class Device {
             return new Uint8Array(0);
         }
         const bytes = this.#transferred(this.#library.simulation_read(this.#now)).slice();
-        if (bench.line === 'dead') {
-            return bytes.subarray(0, 0);
-        }
         return bench.line === 'garbled' ? bytes.map((byte) => (byte * 7 + 90) & 0x7F) : bytes;
     }
 }

@@ -165,11 +165,11 @@ class TestSerial:
         "no port chosen is no problem":
             "bench.choice = 'none'; connect; not problem; shown welcome",
         "a lidar that does not answer is called so":
-            "bench.line = 'dead'; connect; problem: No answer: not one byte came.",
+            "bench.answers = () => false; connect; problem: No answer: not one byte came.",
         "a wrong baud rate is called so":
             "bench.line = 'garbled'; connect; problem: nothing that a T-mini Plus sends: a wrong baud rate",
         "a lidar that does not hear is called so":
-            "return bench.leaveScanning(); bench.line = 'deaf'; connect; problem: does not do what it is asked",
+            "return bench.leaveScanning(); bench.answers = () => false; connect; problem: does not do what it is asked",
     })
     def test_a_serial_port(self, page, story):
         page.play(story)

@@ -123,7 +123,10 @@ def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved
     below, above = place(275, 300), place(275, 100)
     assert above[0] == pytest.approx(below[0], abs=0.02)
     assert above[1] > below[1] + 1 and place(400, 300)[0] > below[0] + 1
+    touch_action = "return document.querySelector('#picture').style.touchAction"
+    assert simulated.run(touch_action) == ""  # A finger scrolls the page.
     simulated.click("zoom-in")
+    assert simulated.run(touch_action) == "none"
     assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 1.5, abs=0.02)
     before = place(200, 200)
     touch(simulated, ("down", 1, 200, 200), ("move", 1, 250, 200), ("up", 1, 250, 200))
@@ -201,22 +204,8 @@ def test_the_points_of_the_last_seconds_are_saved(simulated):
 
 # ------------------------------------------------------------------------------------------------------- appearance
 
-def luminance(colour):
-    parts = [part / 255 for part in colour]
-    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
-    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
-
-
-def contrast(one, other):
-    """The contrast ratio of the Web Content Accessibility Guidelines: 1 to 21."""
-    bright, dark = sorted((luminance(one), luminance(other)), reverse=True)
-    return (bright + 0.05) / (dark + 0.05)
-
-
-PHONE = (360, 740)
+PHONE = (360, 740, 2)
 DARK, LIGHT = ((15, 26, 46), (10, 15, 31)), ((255, 255, 255), (243, 244, 246))
-WORDS = ("text ground, text page, dim ground, dim page, accent ground, nearest ground, on-accent accent, alarm ground, "
-         "alarm alarm-ground, text alarm-ground")
 
 
 @pytest.mark.parametrize("settings, grounds", [
@@ -229,24 +218,12 @@ class TestAppearance:
             .map((item) => item.outerHTML.slice(0, 80))""") == []
 
     def test_the_picture_has_the_theme_and_the_points(self, simulated, grounds):
+        assert simulated.run("""const { width, clientWidth, height, clientHeight } = document.querySelector('#picture');
+            return [width / clientWidth, height / clientHeight]""") == 2 * [simulated.run("return devicePixelRatio")]
         ground = " || ".join(f"r === {r} && g === {g} && b === {b}" for r, g, b in grounds)
         assert simulated.look(ground)[0] > 0.5 * simulated.run(
             "const { width, height } = document.querySelector('#picture'); return width * (height - 80)")
         simulated.play("300 coloured")
-
-    def test_words_stand_out(self, page, grounds):
-        names = sorted(set(WORDS.replace(",", "").split()))
-        colours = dict(zip(names, page.run("""const probe = document.createElement('canvas')
-                .getContext('2d', {willReadFrequently: true});
-            const style = getComputedStyle(document.documentElement);
-            return arguments[0].map((name) => {
-                probe.fillStyle = style.getPropertyValue('--' + name);
-                probe.fillRect(0, 0, 1, 1);
-                return [...probe.getImageData(0, 0, 1, 1).data].slice(0, 3);
-            })""", names)))
-        for pair in WORDS.split(", "):
-            one, other = pair.split()
-            assert contrast(colours[one], colours[other]) >= 4.5, pair
 
 
 def test_points_on_dark_have_the_colours_of_the_tools_pictures():
@@ -308,6 +285,10 @@ def test_no_rule_of_axe_core_is_broken(page):
         pytest.skip("axe-core is not here (test/run.sh --all brings it)")
     with open(path, encoding="utf-8") as file:
         program = file.read()
+    page.run("""for (const [words, ground] of arguments[0]) {  // As in the picture, which axe-core cannot read.
+            document.querySelector('main').prepend(Object.assign(document.createElement('p'), {
+                textContent: words, style: `color: var(--${words}); background: var(--${ground})` }));
+        }""", [("text", "ground"), ("text", "page"), ("dim", "ground"), ("dim", "page"), ("nearest", "ground")])
     for story in ("shown welcome", "simulate; state: scanning; sim-blocked; fault: encoder",
                   "sim-unplugged; age: No scan for"):
         page.play(story)
@@ -321,7 +302,7 @@ def test_no_rule_of_axe_core_is_broken(page):
 
 def test_the_page_is_small_and_asks_for_nothing(simulated):
     assert PAGE.stat().st_size <= SIZE_MAX
-    assert requests(simulated) == {PAGE.as_uri()}
+    assert requests(simulated) == {simulated.current_url} == {PAGE.as_uri()}
 
 
 def test_its_policy_forbids_all_that_it_does_not_need(page):

@@ -370,7 +370,7 @@ export class Picture {
         const context = this.#context;
         const width = (2 * Math.PI) / this.#sectors.length;
         this.#sectors.forEach((mm, i) => {
-            if (mm === 0 || mm > this.#shownMm) {
+            if (mm > this.#shownMm) {
                 return;
             }
             const middle = i * width - Math.PI / 2;
