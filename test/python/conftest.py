@@ -30,8 +30,8 @@ class Simulator:
         self.log = folder / "log"
         self.process = None
 
-    def start(self, *options):
-        command = [SIM, "--pty", "--log", str(self.log), *options]
+    def start(self, *options, line="--pty"):
+        command = [SIM, *line.split(), "--log", str(self.log), *options]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         os.symlink(self.process.stdout.readline().strip(), self.port)
         return self.port

@@ -13,6 +13,7 @@ import select
 import socket
 import struct
 import subprocess
+import time
 
 import pytest
 
@@ -22,18 +23,15 @@ from lidar_bytes import MAGIC, chunk, chunks
 
 
 class Sender:
-    """Sends 4 s of a lidar with its times to each listener; nothing passes for half of each second. Its time and the
-    package's is virtual: it stands while the lidar's thread works, and passes while that sleeps."""
+    """Sends 4 s of a lidar with its times to each listener; nothing passes for half of each second. Stands in for the
+    modules socket, select and time: time passes while the lidar's thread sleeps."""
+    IPPROTO_TCP = TCP_NODELAY = None
 
     def __init__(self):
         room = subprocess.run([SIM, "--write", "-", "--seconds", "5"], check=True, capture_output=True).stdout
         self.chunks = chunks(room[:400 * 131])
-        self.socket = socket.create_server(("127.0.0.1", 0))
-        self.port = f"tcp:127.0.0.1:{self.socket.getsockname()[1]}"
-        self.heard = b""
-        self.begun = []  # When each was accepted.
-        self.now_s = 1000.0
-        self.listener, self.sent = None, 0
+        self.now_s, self.heard, self.is_open = 1000.0, b"", False
+        self.begun = []  # When each connection was.
 
     def monotonic(self):
         return self.now_s
@@ -43,47 +41,46 @@ class Sender:
 
     def sleep(self, seconds):
         self.now_s += seconds
-        if self.listener is not None:
-            self.send()
+        time.sleep(0)
+
+    def create_connection(self, *_):
+        self.begun.append(self.now_s)
+        self.waiting, self.is_open = [MAGIC, *self.chunks], True
+        return self
+
+    def setsockopt(self, *_): ...
+
+    def setblocking(self, _): ...
 
     def select(self, sockets, *_):
-        """The package waits for a greeting."""
-        self.ears = sockets
-        self.listener, self.sent = self.socket.accept()[0], 0
-        self.begun.append(self.now_s)
-        self.listener.sendall(MAGIC)
-        return select.select(sockets, [], [])
+        return sockets, [], []
 
-    def send(self):
+    def recv(self, _):
         passed = min(len(self.chunks), round(100 * (self.now_s - self.begun[-1])))
-        if self.sent < passed and (passed % 100 >= 50 or passed == 1):
-            self.listener.sendall(b"".join(self.chunks[self.sent:passed]))
-            self.sent = passed
-        elif passed == len(self.chunks):
-            self.leave()
-        else:
-            return
-        select.select(self.ears, [], [])  # It has arrived.
+        count = len(self.waiting) - len(self.chunks) + passed
+        if self.waiting and (count <= 0 or 1 < passed < len(self.chunks) and passed % 100 < 50):
+            raise BlockingIOError
+        data, self.waiting = b"".join(self.waiting[:count]), self.waiting[count:]
+        return data
 
-    def leave(self):
-        self.listener.setblocking(False)
-        with contextlib.suppress(BlockingIOError):
-            self.heard += self.listener.recv(1000)
-        self.listener.close()
-        self.listener = None
+    def send(self, data):
+        self.heard += data
+        return len(data)
+
+    def close(self):
+        self.is_open = False
 
 
 @pytest.fixture
 def sender(monkeypatch):
     one = Sender()
-    for module, name in (("_line", "time"), ("_line", "select"), ("_lidar", "time")):
-        monkeypatch.setattr(f"tmini.{module}.{name}", one)
-    yield one
-    one.socket.close()
+    for name in ("_line.socket", "_line.select", "_line.time", "_lidar.time"):
+        monkeypatch.setattr(f"tmini.{name}", one)
+    return one
 
 
 def test_a_timed_stream_with_stalls_of_half_a_second_spoils_neither_scans_nor_times(sender, tmp_path):
-    with tmini.Lidar(sender.port, backlog=9999) as lidar:
+    with tmini.Lidar("tcp:x:1", backlog=9999) as lidar:
         scans = [next(iter(lidar)) for _ in range(18)]  # Of the first connection.
         next(scan for scan in lidar if len(sender.begun) > 1 and scan.start_s > sender.begun[1])
     assert all(scan.complete for scan in scans)
@@ -105,7 +102,7 @@ def test_a_timed_stream_that_is_there_later_only_listens(sender, monkeypatch):
         return open_line(name)
 
     monkeypatch.setattr(tmini._lidar, "open_line", open_later)
-    with tmini.Lidar(sender.port, 8, timeout=None, backlog=9999) as lidar:
+    with tmini.Lidar("tcp:x:1", 8, timeout=None, backlog=9999) as lidar:
         assert [lidar.read(1000).number for _ in range(16)] == list(range(1, 17))
         lidar.stop()
         lidar.start()
@@ -116,11 +113,10 @@ def test_a_timed_stream_that_is_there_later_only_listens(sender, monkeypatch):
 
 
 def test_a_timed_stream_takes_no_frequency(sender):
-    with pytest.raises(tmini.LidarError, match="whose sender sets the frequency") as refused:
-        tmini.Lidar(sender.port, frequency_hz=12)
-    sender.listener.settimeout(10)
-    assert sender.listener.recv(1) == b"" and refused  # It is closed, although the error refers to it.
-    with tmini.Lidar(sender.port) as lidar, pytest.raises(tmini.LidarError, match="sends nothing"):
+    with pytest.raises(tmini.LidarError, match="whose sender sets the frequency"):
+        tmini.Lidar("tcp:x:1", frequency_hz=12)
+    assert len(sender.begun) == 1 and not sender.is_open
+    with tmini.Lidar("tcp:x:1") as lidar, pytest.raises(tmini.LidarError, match="sends nothing"):
         lidar.set_frequency(6)
 
 
