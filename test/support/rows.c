@@ -115,6 +115,12 @@ uint32_t row_number(const char *word)
     return (uint32_t)strtoul(row_text(word), NULL, 0);
 }
 
+long row_angle(const char *text, char **rest)
+{
+    const long number = strtol(text, rest, 10);
+    return **rest == 'd' ? number * 64 + strtol(*rest + 1, rest, 10) : number;
+}
+
 size_t row_bytes(const char *digits, uint8_t *bytes)
 {
     size_t count = 0;

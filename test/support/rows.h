@@ -59,6 +59,9 @@ bool row_is(const char *word, const char *name);
 const char *row_text(const char *word);
 uint32_t row_number(const char *word);
 
+/* An angle in sixty-fourths of a degree, of which "d" makes degrees: 180d+1. */
+long row_angle(const char *text, char **rest);
+
 /* Bytes in hexadecimal digits, such as "AA55"; returns how many there are. */
 size_t row_bytes(const char *digits, uint8_t *bytes);
 

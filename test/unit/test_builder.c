@@ -253,24 +253,14 @@ static void overrun(void)
     TEST_ASSERT_FALSE(tmini_frame_intact(tmini_parser_frame(&receiver.parser)));
 }
 
-static uint32_t angle_of(const char *text, char **rest)
-{
-    uint32_t angle_q6 = (uint32_t)strtoul(text, rest, 10);
-    if (**rest == 'd') {
-        angle_q6 *= DEGREE;
-        (*rest)++;
-    }
-    return **rest == '+' ? angle_q6 + angle_of(*rest + 1, rest) : angle_q6;
-}
-
 /* "S!:0" or "P40:1d,90d". */
 static void tell_packet(const char *word, bool is_start)
 {
     const char *const at = strchr(word, ':');
     const unsigned long given = strtoul(word + 1, NULL, is_start ? 16 : 10);
     char *rest;
-    const uint32_t first_q6 = angle_of(at + 1, &rest);
-    const uint32_t last_q6 = *rest == ',' ? angle_of(rest + 1, &rest) : first_q6;
+    const uint32_t first_q6 = (uint32_t)row_angle(at + 1, &rest);
+    const uint32_t last_q6 = *rest == ',' ? (uint32_t)row_angle(rest + 1, &rest) : first_q6;
     const uint8_t ct = (uint8_t)(is_start ? (given > 0 ? given : 0x79) : 0);
     const uint8_t count = (uint8_t)(is_start ? 1 : given > 0 ? given : 5);
     TEST_ASSERT_EQUAL_MESSAGE(at[-1] == '!', arrive(ct, count, first_q6, last_q6), word);
@@ -297,7 +287,7 @@ static void tell_word(char *word)
         {"end-ms", scan->end_ms},     {"late", builder.late_scans},
     };
     char *rest;
-    const uint32_t number = angle_of(row_text(word), &rest);
+    const uint32_t number = (uint32_t)row_angle(row_text(word), &rest);
     if (word[0] == '@') {
         expect_point(word);
     } else if (row_is(word, "new")) {
@@ -321,9 +311,9 @@ static void tell_word(char *word)
     } else if (row_is(word, "end")) {
         TEST_ASSERT_TRUE(arrive(0x7B, 1, number, number));
     } else if (row_is(word, "get")) {
-        receive(0x00, 5, number, angle_of(rest + 1, &rest));
+        receive(0x00, 5, number, (uint32_t)row_angle(rest + 1, &rest));
     } else if (row_is(word, "pause")) {
-        arrive_after_a_pause(0x00, 5, number, angle_of(rest + 1, &rest));
+        arrive_after_a_pause(0x00, 5, number, (uint32_t)row_angle(rest + 1, &rest));
     } else if (row_is(word, "pause-S")) {
         arrive_after_a_pause(0x79, 1, number, number);
     } else if (row_is(word, "strays")) {

@@ -28,15 +28,6 @@ void setUp(void)
  *     100d,1001=10d,1001      what a point of this angle and distance becomes
  *     100d=10d        the robot's angle for an angle of the lidar */
 
-static long angle_of(const char *text, char **rest)
-{
-    long angle_q6 = strtol(text, rest, 10);
-    if (**rest == 'd') {
-        angle_q6 = angle_q6 * DEGREE + strtol(*rest + 1, rest, 10);
-    }
-    return angle_q6;
-}
-
 static void add_arc(const char *text)
 {
     arcs[mount.masked_count].from_deg = (int16_t)strtol(text, NULL, 10);
@@ -46,16 +37,16 @@ static void add_arc(const char *text)
 static void expect_point(const char *word)
 {
     char *rest;
-    tmini_point_t point = {(uint16_t)angle_of(word, &rest), 0, 10, 3};
+    tmini_point_t point = {(uint16_t)row_angle(word, &rest), 0, 10, 3};
     tmini_scan_t scan = {.points = &point, .count = 1};
     if (*rest == '=') {
-        TEST_ASSERT_EQUAL_UINT16_MESSAGE(angle_of(rest + 1, &rest),
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(row_angle(rest + 1, &rest),
                                          tmini_mount_angle(&mount, point.angle_q6), word);
         return;
     }
     point.distance_mm = (uint16_t)strtoul(rest + 1, &rest, 10);
     tmini_mount_step(&mount, &scan);
-    TEST_ASSERT_EQUAL_UINT16_MESSAGE(angle_of(rest + 1, &rest), point.angle_q6, word);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(row_angle(rest + 1, &rest), point.angle_q6, word);
     TEST_ASSERT_EQUAL_UINT16_MESSAGE(strtoul(rest + 1, NULL, 10), point.distance_mm, word);
     TEST_ASSERT_EQUAL_UINT8(10, point.intensity);
     TEST_ASSERT_EQUAL_UINT8(3, point.flag);
@@ -66,7 +57,7 @@ static void expect_point(const char *word)
 static void tell_word(char *word)
 {
     char *rest;
-    const int16_t number = (int16_t)angle_of(row_text(word), &rest);
+    const int16_t number = (int16_t)row_angle(row_text(word), &rest);
     if (row_is(word, "front")) {
         mount.front_q6 = number;
     } else if (row_is(word, "offset")) {

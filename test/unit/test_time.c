@@ -10,8 +10,6 @@
 
 #include <stdlib.h>
 
-#define DEGREE 64u
-
 static tmini_point_t points[640];
 static tmini_scan_t scan;
 
@@ -44,11 +42,7 @@ static void set_angles(const char *text)
 {
     for (unsigned i = 0; text[0] != '\0'; i++) {
         char *rest;
-        long angle_q6 = strtol(text, &rest, 10);
-        if (rest[0] == 'd') {
-            angle_q6 = angle_q6 * (long)DEGREE + strtol(rest + 1, &rest, 10);
-        }
-        points[i].angle_q6 = (uint16_t)angle_q6;
+        points[i].angle_q6 = (uint16_t)row_angle(text, &rest);
         text = rest + (rest[0] == ',' ? 1 : 0);
     }
 }
