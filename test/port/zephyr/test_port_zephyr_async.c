@@ -26,18 +26,19 @@ const unsigned port_way_count = sizeof port_ways / sizeof port_ways[0];
 
 void test_line_errors_are_counted_by_kind_and_reception_starts_again(void)
 {
-    static const uint32_t errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_BREAK};
+    static const uint32_t errors[] = {UART_ERROR_FRAMING, UART_ERROR_NOISE, UART_ERROR_NOISE,
+                                      UART_BREAK,         UART_BREAK,       UART_BREAK};
     tmini_zephyr_counters_t counters;
     start();
     assert_true_scans(1, 1);
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < 6; i++) {
         machine_receive(errors[i], (const uint8_t *)"", 1);
         assert_gap();
     }
     tmini_zephyr_counters(port_program.context, &counters);
     TEST_ASSERT_EQUAL_UINT32(1, counters.framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counters.noise_errors);
-    TEST_ASSERT_EQUAL_UINT32(1, counters.breaks);
+    TEST_ASSERT_EQUAL_UINT32(2, counters.noise_errors);
+    TEST_ASSERT_EQUAL_UINT32(3, counters.breaks);
     TEST_ASSERT_EQUAL_UINT32(0, counters.overruns);
 }
 
