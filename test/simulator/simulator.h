@@ -201,7 +201,8 @@ typedef struct {
     encode_turn_t turn;
 } sim_rotor_t;
 
-/* Everything about one lidar. Caller-owned. Users may read `counts` and `line.lost`; the rest is private. */
+/* Everything about one lidar. Caller-owned. Users may read `counts` and `line.lost`; the rest is
+ * private. */
 typedef struct {
     sim_config_t config;
     sim_observer_t observer;

@@ -74,8 +74,8 @@ typedef struct {
 #define row_expects(word, numbers) rows_expect(word, numbers, sizeof(numbers) / sizeof(numbers)[0])
 bool rows_expect(const char *word, const row_number_t *numbers, size_t count);
 
-/* For words such as "attempts:3", which give a member this value: {"attempts", MEMBER(config.attempts)}. If
- * the word's name is none of these, returns false. */
+/* For words such as "attempts:3", which give a member this value: {"attempts",
+ * MEMBER(config.attempts)}. If the word's name is none of these, returns false. */
 typedef struct {
     const char *name;
     void *member;

@@ -51,8 +51,8 @@
 /* Tells the row's tale, for run_rows(). */
 void tale_tell_row(const row_t *row);
 
-/* For a test that does more than words can say: begins a tale, tells words of it, and ends it, which
- * its tearDown() does. */
+/* For a test that does more than words can say: begins a tale, tells words of it, and ends it,
+ * which its tearDown() does. */
 void tale_begin(void);
 void tale_tell(const char *text);
 void tale_end(void);

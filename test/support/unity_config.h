@@ -10,8 +10,8 @@
 #include <limits.h>
 #include <stdint.h>
 
-/* Of an emulated controller (test/target): prints a character; what comes before the first and after
- * the last. */
+/* Of an emulated controller (test/target): prints a character; what comes before the first and
+ * after the last. */
 void board_put(char character);
 void board_start(void);
 void board_stop(void);

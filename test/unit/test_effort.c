@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The work of one poll is bounded, whatever has arrived: it looks at 1536 bytes and one packet, less
- * the 44 that each frame costs and the poll itself. The ring here is large and full of the bytes that
- * cost most. */
+/* The work of one poll is bounded, whatever has arrived: it looks at 1536 bytes and one packet,
+ * less the 44 that each frame costs and the poll itself. The ring here is large and full of the
+ * bytes that cost most. */
 
 #include "tale.h"
 #include "tmini_driver.h"

@@ -111,7 +111,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(an_offset_leaves_a_range_a_range, "offset:-32768 0,16383=0,1"),
     ROW(an_offset_leaves_a_range_in_its_bits, "offset:32767 0,1=0,16383"),
     ROW(an_offset_of_the_largest_range_leaves_1_mm, "offset:-16383 0,16383=0,1"),
-    ROW(a_front_may_be_any_number_of_sixty_fourths_of_a_degree, /* 512 degrees to the left are 152. */
+    ROW(a_front_may_be_any_number_of_sixty_fourths_of_a_degree, /* 512 to the left are 152. */
         "front:-32768 0=152d 23039=152d-1 upside-down 0=208d"),
     ROW(a_front_may_be_to_the_right, /* 87.4 degrees. */
         "front:32767 0=208d+1 23039=208d front:5594 5600=6 5594=0 5593=23039"),

@@ -102,7 +102,7 @@ void setUp(void)
     scan_node_init(&node, &lidar, &config, frame);
 }
 
-/* 6 Hz, minus the time in which the motor spins up. Connecting may allocate, publishing must not. */
+/* 6 Hz, minus the motor's spin-up. Connecting may allocate, publishing must not. */
 void test_each_scan_is_published_and_allocates_nothing(void)
 {
     run_for(3000);
