@@ -182,16 +182,16 @@ static bool record(FILE *file, uint64_t until_us)
 
 static bool write_recording(const options_t *options)
 {
-    const bool to_stdout = strcmp(options->write_path, "-") == 0;
-    FILE *file = to_stdout ? stdout : fopen(options->write_path, "wb");
-    bool written = file != NULL && record(file, end_us(options));
-    if (file != NULL) {
-        written = (to_stdout ? fflush(file) : fclose(file)) == 0 && written;
+    FILE *file;
+    if (!report_open_file(&file, options->write_path)) {
+        return false;
     }
-    if (!written) {
+    const bool is_recorded = record(file, end_us(options));
+    const bool is_written = report_close_file(file) && is_recorded;
+    if (!is_written) {
         fprintf(stderr, "tmini-sim: cannot write %s: %s\n", options->write_path, strerror(errno));
     }
-    return written;
+    return is_written;
 }
 
 static void set_up(const options_t *options)

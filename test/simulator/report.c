@@ -69,8 +69,7 @@ static void write_truth(void *context, const sim_link_packet_t *packet)
     }
 }
 
-/* Leaves `*file` NULL when no path is given. */
-static bool open_file(FILE **file, const char *path)
+bool report_open_file(FILE **file, const char *path)
 {
     *file = NULL;
     if (path == NULL) {
@@ -84,36 +83,29 @@ static bool open_file(FILE **file, const char *path)
     return true;
 }
 
-static void observe(report_t *report, sim_t *sim, sim_link_t *link)
+bool report_open(report_t *report, const char *log_path, const char *truth_path, sim_t *sim,
+                 sim_link_t *link)
 {
     const sim_observer_t device_observer = {
         .context = report, .on_command = log_command, .on_mode = log_mode};
     const sim_link_observer_t link_observer = {
         .context = report, .on_packet = write_truth, .on_fault = log_fault};
-
-    if (report->log != NULL) {
-        sim_observe(sim, &device_observer);
-    }
-    sim_link_observe(link, &link_observer);
-}
-
-bool report_open(report_t *report, const char *log_path, const char *truth_path, sim_t *sim,
-                 sim_link_t *link)
-{
     report->sim = sim;
     report->link = link;
     report->truth = NULL;
-    if (!open_file(&report->log, log_path) || !open_file(&report->truth, truth_path)) {
+    if (!report_open_file(&report->log, log_path) ||
+        !report_open_file(&report->truth, truth_path)) {
         return false;
     }
     if (report->log != NULL) {
         setvbuf(report->log, NULL, _IOLBF, BUFSIZ);
+        sim_observe(sim, &device_observer);
     }
     if (report->truth != NULL) {
         fputs("packet,revolution,index,angle_q6,distance_mm,intensity,flag,intact\n",
               report->truth);
     }
-    observe(report, sim, link);
+    sim_link_observe(link, &link_observer);
     return true;
 }
 
@@ -132,25 +124,21 @@ static void write_totals(report_t *report, uint64_t now_us, uint64_t lost_by_hos
             device->unknown_commands, lost_by_host);
 }
 
-static bool close_file(FILE *file)
+bool report_close_file(FILE *file)
 {
-    if (file == NULL || file == stdout) {
-        return file == NULL || (fflush(stdout) == 0 && ferror(stdout) == 0);
-    }
-    const bool is_whole = ferror(file) == 0; /* a line-buffered file has nothing left to write */
-    return fclose(file) == 0 && is_whole;
+    const bool is_whole = file == NULL || (fflush(file) == 0 && ferror(file) == 0);
+    return (file == NULL || file == stdout || fclose(file) == 0) && is_whole;
 }
 
 bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host)
 {
-    bool written;
     if (report->log != NULL) {
         write_totals(report, now_us, lost_by_host);
     }
-    written = close_file(report->log);
-    written = close_file(report->truth) && written;
-    if (!written) {
+    const bool is_logged = report_close_file(report->log);
+    const bool is_written = report_close_file(report->truth) && is_logged;
+    if (!is_written) {
         fprintf(stderr, "tmini-sim: cannot write log or truth: %s\n", strerror(errno));
     }
-    return written;
+    return is_written;
 }

@@ -25,4 +25,9 @@ bool report_open(report_t *report, const char *log_path, const char *truth_path,
 /* Writes the totals. If writing has failed, prints a message and returns false. */
 bool report_close(report_t *report, uint64_t now_us, uint64_t lost_by_host);
 
+/* A file that is written: NULL if there is no path, standard output for "-". False: it cannot be
+ * opened, and a message is printed; or not all was written. */
+bool report_open_file(FILE **file, const char *path);
+bool report_close_file(FILE *file);
+
 #endif
