@@ -5,12 +5,6 @@
 
 #include <string.h>
 
-void bridge_init(bridge_t *bridge, const bridge_config_t *config)
-{
-    memset(bridge, 0, sizeof *bridge);
-    bridge->config = *config;
-}
-
 static void put_byte(bridge_t *bridge, uint8_t byte)
 {
     if (bridge->out_count < BRIDGE_HELD) {

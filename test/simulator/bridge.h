@@ -29,14 +29,13 @@ typedef struct {
 
 #define BRIDGE_HELD 65536u
 
+/* Begins as {.config = …}. */
 typedef struct {
     bridge_config_t config;
     uint64_t deliver_us; /* when `out` may be taken */
     size_t out_count;
     uint8_t out[BRIDGE_HELD];
 } bridge_t;
-
-void bridge_init(bridge_t *bridge, const bridge_config_t *config);
 
 /* The device has sent these bytes. What finds no room in `out` is lost. */
 void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count);

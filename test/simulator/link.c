@@ -243,11 +243,6 @@ static void pass_run(sim_link_t *link, const sim_run_t *run)
 
 /* ---- Faults that last ---- */
 
-static uint64_t draw_amount(sim_link_t *link, sim_link_kind_t kind)
-{
-    return random_between(&link->random, link->config.shortest[kind], link->config.longest[kind]);
-}
-
 /* How many bytes may have been delivered by now: after a stall, as many as the line can carry. */
 static uint64_t delivery_limit(const sim_link_t *link, uint64_t now_us)
 {
@@ -302,14 +297,6 @@ static void begin_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t amount,
     }
 }
 
-static void end_fault(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
-{
-    if (kind == SIM_LINK_UNPLUG) {
-        sim_power(link->sim, true, at_us);
-    }
-    end(link, kind, at_us);
-}
-
 /* On a silent line a burst or a cut has no bytes to damage; without power no fault has an
  * effect. */
 static bool has_an_effect(const sim_link_t *link, sim_link_kind_t kind)
@@ -325,7 +312,10 @@ static void fault_is_due(sim_link_t *link, sim_link_kind_t kind, uint64_t at_us)
 {
     schedule(link, kind, at_us);
     if (has_an_effect(link, kind) && !link->under_way[kind]) {
-        begin_fault(link, kind, draw_amount(link, kind), at_us);
+        const sim_link_config_t *const config = &link->config;
+        begin_fault(link, kind,
+                    random_between(&link->random, config->shortest[kind], config->longest[kind]),
+                    at_us);
     }
 }
 
@@ -345,7 +335,10 @@ static void happen(sim_link_t *link, uint64_t at_us)
 {
     for (unsigned kind = SIM_LINK_BURST; kind < SIM_LINK_KINDS; kind++) {
         if (link->end_us[kind] == at_us) {
-            end_fault(link, (sim_link_kind_t)kind, at_us);
+            if (kind == SIM_LINK_UNPLUG) {
+                sim_power(link->sim, true, at_us);
+            }
+            end(link, (sim_link_kind_t)kind, at_us);
         }
         if (link->next[kind] == at_us) {
             fault_is_due(link, (sim_link_kind_t)kind, at_us);

@@ -197,7 +197,7 @@ static bool write_recording(const options_t *options)
 static void set_up(const options_t *options)
 {
     sim_init(&device, &options->device);
-    bridge_init(&bridge, &options->bridge);
+    bridge.config = options->bridge;
     if (options->boot_ms >= 0) {
         sim_power(&device, false, 0);
     }

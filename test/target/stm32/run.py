@@ -21,7 +21,6 @@ Exit status: 0 as expected, 1 not.
 import argparse
 import collections
 import os
-import select
 import socket
 import struct
 import subprocess
@@ -93,7 +92,6 @@ class Board:
                  "-serial", f"unix:{folder}/clock", "-kernel", args.firmware],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE)
             self.line, self.clock = [listener.accept()[0] for listener in listeners]
-        self.line.setblocking(False)
         self.clock.settimeout(PATIENCE_S)
         os.set_blocking(self.process.stdout.fileno(), False)
 
@@ -111,14 +109,9 @@ class Board:
 
     def _read_line(self):
         try:
-            return self.line.recv(4096)
+            return self.line.recv(4096, socket.MSG_DONTWAIT)
         except BlockingIOError:
             return b""
-
-    def _write_line(self, data):
-        while data:
-            select.select([], [self.line], [])
-            data = data[self.line.send(data):]
 
     def step(self):
         if not self.clock.recv(1):
@@ -126,7 +119,7 @@ class Board:
         self.now_ms += 1
         self._read_console()
         sent = self.lidar.exchange(1000 * self.now_ms, self._read_line())
-        self._write_line(sent)
+        self.line.sendall(sent)
         self.clock.sendall(bytes([len(sent)]))
 
     def wait(self, what, condition, seconds):
