@@ -20,7 +20,7 @@ static tmini_health_t health;
 /* Words of the rows:
  *
  *     90=0:04:20      the command 90 has a reply of this mode, type and length; 65=: it has none
- *     info:9702…      the content of a reply: information; serial:2025…: its serial number, in words
+ *     info:9702…      the content of a reply: information; serial:2025…: its serial number
  *     health:023412 frequency:58020000=600    the same with health; with a frequency
  *     model:151 …     what the content says */
 
@@ -83,8 +83,8 @@ static const row_t rows[] IN_FLASH = {
     /* Only the start is answered in continuous mode. */
     ROW(each_command_but_stop_and_reboot_has_its_reply,
         "65= 40= 60=1:81:0 90=0:04:20 92=0:06:3 09=0:04:4 0A=0:04:4 0B=0:04:4 0C=0:04:4 0D=0:04:4"),
-    /* Two T-mini Plus (section 9.4) and a T-mini Pro, whose firmware's minor number comes first. The
-     * second is composed from the output of the vendor's program (issue 65 of
+    /* Two T-mini Plus (section 9.4) and a T-mini Pro, whose firmware's minor number comes first.
+     * The second is composed from the output of the vendor's program (issue 65 of
      * YDLIDAR/YDLidar-SDK). */
     ROW(device_information_of_real_units,
         "info:9702010102000205000402040000000900010904 model:151 plus:1 firmware:1 "
