@@ -211,6 +211,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_stop_that_times_out_still_stands, "idle stop:10=TIMEOUT >65 @STOPPING"),
     ROW(a_question_that_waits_is_withdrawn_and_the_one_under_way_is_not,
         "idle health >92 read-info:10=TIMEOUT <health !HEALTH @IDLE"),
+    ROW(after_a_question_that_is_withdrawn_the_next_one_is_asked,
+        "stop >65 health read-info:60=TIMEOUT >90 >65 ~50 >92 <health !HEALTH"),
     ROW(a_result_is_not_touched_by_a_failure,
         "idle read-info:10=TIMEOUT >90 read-health:10=TIMEOUT >65 read-frequency:10=TIMEOUT >65 "
         "model:1 serial:2 error:3 code:4 chz:5"),

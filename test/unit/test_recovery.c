@@ -126,7 +126,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_clock_that_wraps_around_to_zero_makes_no_scan_younger,
         "idle clock:-50 !NONE completed:500 clock:0 !NONE clock:50 !NONE age:600"),
     ROW(an_age_of_24_days_is_known_without_a_poll,
-        "idle completed:0 !NONE ~2147483647 age:2147483647"),
+        "idle completed:0 !NONE ~2147483646 age:2147483646 ~1 " NO_AGE "/ idle completed:100 !NONE "
+        "~2147483600 " NO_AGE),
     ROW(an_age_of_24_days_remains,
         "idle completed:0 5( ~1073741823 !NONE ) " NO_AGE "~1000 " NO_AGE),
     /* ---- How long a task may sleep ---- */
@@ -147,7 +148,7 @@ static const row_t tales[] IN_FLASH = {
         "takes:0 stop next:0 !FAILED takes:2 >65 +50 !STOPPED"),
     ROW(a_task_sleeps_until_a_candidate_is_given_up,
         "scans !NONE next:1000 <x:AA ~10 !NONE next:50 ~50 !NONE next:50 ~10 !NONE next:40 ~50 "
-        "next:0"),
+        "next:0 / frame:300 scans <x:AA ~10 !NONE next:50 5( ~50 !NONE ) ~20 !NONE next:30"),
     ROW(a_candidate_with_no_time_at_all_is_polled_after_a_millisecond,
         "frame:0 scans <x:AA ~10 !NONE next:1"),
     /* ---- What outlives a loss ---- */
