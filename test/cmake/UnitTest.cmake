@@ -89,16 +89,6 @@ function(tmini_configure_unit_test target generated_dir)
     target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 endfunction()
 
-# Adds the ctest. On a machine without exit statuses, the printed text decides whether it passed.
-function(tmini_register_unit_test name label)
-    tmini_add_check(${name} ${label} COMMAND ${name} NEEDS ${name})
-    if(TMINI_TEST_PASS_PATTERN)
-        set_tests_properties(${name} PROPERTIES
-            PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"
-            FAIL_REGULAR_EXPRESSION "${TMINI_TEST_FAIL_PATTERN}")
-    endif()
-endfunction()
-
 function(tmini_add_unit_test name)
     cmake_parse_arguments(arg "" "LABEL" "SOURCES;SHARED;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
     if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
@@ -130,5 +120,10 @@ function(tmini_add_unit_test name)
     add_executable(${name} ${arg_SOURCES} ${runner} ${mocks})
     tmini_configure_unit_test(${name} ${dir} ${arg_MOCKS})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES})
-    tmini_register_unit_test(${name} ${arg_LABEL})
+    tmini_add_check(${name} ${arg_LABEL} COMMAND ${name} NEEDS ${name})
+    if(TMINI_TEST_PASS_PATTERN) # A machine without exit statuses: the printed text decides.
+        set_tests_properties(${name} PROPERTIES
+            PASS_REGULAR_EXPRESSION "${TMINI_TEST_PASS_PATTERN}"
+            FAIL_REGULAR_EXPRESSION "${TMINI_TEST_FAIL_PATTERN}")
+    endif()
 endfunction()

@@ -47,14 +47,3 @@ size_t bridge_take(bridge_t *bridge, uint64_t now_us, uint8_t *bytes, size_t max
     }
     return count;
 }
-
-bool bridge_kind_named(const char *name, bridge_kind_t *kind)
-{
-    static const char *const names[BRIDGE_KINDS] = {"clean", "telnet", "crnl", "xonxoff", "seven"};
-    for (*kind = BRIDGE_CLEAN; *kind < BRIDGE_KINDS; *kind = (bridge_kind_t)(*kind + 1)) {
-        if (strcmp(name, names[*kind]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}

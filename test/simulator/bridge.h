@@ -18,8 +18,7 @@ typedef enum {
     BRIDGE_TELNET,  /* FF is doubled */
     BRIDGE_CRNL,    /* 0D becomes 0A */
     BRIDGE_XONXOFF, /* 11 and 13 are taken away */
-    BRIDGE_SEVEN,   /* seven bits */
-    BRIDGE_KINDS
+    BRIDGE_SEVEN    /* seven bits */
 } bridge_kind_t;
 
 typedef struct {
@@ -42,8 +41,5 @@ void bridge_put(bridge_t *bridge, const uint8_t *bytes, size_t count);
 
 /* Takes at most `max` bytes that have reached the host by now. */
 size_t bridge_take(bridge_t *bridge, uint64_t now_us, uint8_t *bytes, size_t max);
-
-/* "telnet" and so on; false: there is no such kind. */
-bool bridge_kind_named(const char *name, bridge_kind_t *kind);
 
 #endif

@@ -95,14 +95,9 @@ static void set_flag(int fd, int level, int option)
     setsockopt(fd, level, option, &on, sizeof on);
 }
 
-static bool waits(const host_t *host)
-{
-    return (events_of(host->listener, POLLIN, 0) & (POLLIN | POLLERR | POLLHUP)) != 0;
-}
-
 static bool has_gone(const host_t *host)
 {
-    return (host->input_ended && waits(host)) ||
+    return (host->input_ended && events_of(host->listener, POLLIN, 0) != 0) ||
            (events_of(host->fd, 0, 0) & (POLLERR | POLLHUP)) != 0;
 }
 
@@ -115,24 +110,19 @@ static bool update_tcp(host_t *host)
         host->fd = -1;
         forget_client(host);
     }
-    if (host->fd < 0 && waits(host)) {
-        host->fd = accept(host->listener, NULL, NULL);
-        if (host->fd >= 0) {
-            set_flag(host->fd, IPPROTO_TCP, TCP_NODELAY);
-            fcntl(host->fd, F_SETFL, O_NONBLOCK);
-        }
+    if (host->fd < 0 && (host->fd = accept(host->listener, NULL, NULL)) >= 0) {
+        set_flag(host->fd, IPPROTO_TCP, TCP_NODELAY);
+        fcntl(host->fd, F_SETFL, O_NONBLOCK);
     }
     return host->fd >= 0;
 }
 
 static bool listen_on(host_t *host, uint16_t port)
 {
-    struct sockaddr_in address;
+    struct sockaddr_in address = {.sin_family = AF_INET,
+                                  .sin_port = htons(port),
+                                  .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)}};
     socklen_t length = sizeof address;
-    memset(&address, 0, sizeof address);
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     host->listener = socket(AF_INET, SOCK_STREAM, 0);
     if (host->listener < 0) {
         return false;

@@ -71,17 +71,24 @@ bool like_read_number(options_t *options, const number_t *number, const char *te
     return true;
 }
 
+bool like_find(const char *name, const char *const *names, unsigned count, unsigned *found)
+{
+    *found = 0;
+    while (*found < count && strcmp(name, names[*found]) != 0) {
+        ++*found;
+    }
+    return *found < count;
+}
+
 static bool set_beginning(options_t *options, const char *value)
 {
     static const char *const names[] = {[SIM_BEGINS_ANYWHERE] = "anywhere",
                                         [SIM_BEGINS_UNMARKED] = "unmarked",
                                         [SIM_BEGINS_WITH_A_START] = "start"};
-    unsigned beginning = 0;
-    while (beginning < 3 && strcmp(value, names[beginning]) != 0) {
-        beginning++;
-    }
+    unsigned beginning;
+    const bool is_known = like_find(value, names, 3, &beginning);
     options->device.beginning = (sim_beginning_t)(beginning % 3);
-    return beginning < 3;
+    return is_known;
 }
 
 static bool set_number(options_t *options, const char *key, const char *value)

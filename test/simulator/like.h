@@ -31,6 +31,9 @@ typedef struct {
 bool like_parse(const char *text, double low, double high, double *number);
 bool like_read_number(options_t *options, const number_t *number, const char *text);
 
+/* Finds the name among the names; false: it is not there. */
+bool like_find(const char *name, const char *const *names, unsigned count, unsigned *found);
+
 /* A line of a report. False: the value is invalid. Other keys and the value "unknown" change
  * nothing. */
 bool like_set(options_t *options, const char *key, const char *value);

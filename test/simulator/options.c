@@ -79,7 +79,11 @@ static bool set_fault(options_t *options, const char *value)
 
 static bool set_bridge(options_t *options, const char *value)
 {
-    return bridge_kind_named(value, &options->bridge.kind);
+    static const char *const names[] = {"clean", "telnet", "crnl", "xonxoff", "seven"};
+    unsigned kind;
+    const bool is_known = like_find(value, names, 5, &kind);
+    options->bridge.kind = (bridge_kind_t)kind;
+    return is_known;
 }
 
 static bool set_mast(options_t *options, const char *value)
