@@ -18,8 +18,6 @@
 
 set(TMINI_CMOCK_CONFIG ${CMAKE_CURRENT_LIST_DIR}/cmock.yml)
 
-# -W0 turns off Ruby's warnings about the generator's own code.
-
 # Sets OUT to the runner made in the folder DIR for the test file SOURCE, and for SHARED if given.
 function(tmini_generate_runner out source dir shared)
     set(generator ${TMINI_UNITY_DIR}/auto/generate_test_runner.rb)
@@ -43,7 +41,8 @@ function(tmini_generate_runner out source dir shared)
         set(source ${dir}/${test_file})
         file(GENERATE OUTPUT ${source} CONTENT "${both}")
     endif()
-    # Run in the folder of the test file: then reports name "test_x.c" without a path.
+    # Run in the folder of the test file: then reports name "test_x.c" without a path. -W0 turns off
+    # Ruby's warnings about the generator's own code.
     add_custom_command(OUTPUT ${runner}
         COMMAND ${TMINI_RUBY} -W0 ${generator} ${TMINI_CMOCK_CONFIG} ${test_file} ${runner}
         ${shorten}

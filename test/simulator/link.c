@@ -61,7 +61,7 @@ void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config
 {
     memset(link, 0, sizeof *link);
     link->sim = sim;
-    link->config = config == NULL ? sim_link_default_config() : *config;
+    link->config = *config;
     link->cut_from = SIZE_MAX;
     random_seed(&link->random, link->config.seed);
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {

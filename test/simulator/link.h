@@ -99,7 +99,7 @@ typedef struct {
  * 0.5..5 s, garbled for 50..2000 ms. */
 sim_link_config_t sim_link_default_config(void);
 
-/* The caller owns `sim`, which must outlive the link. `config` is copied; NULL: the default one. */
+/* The caller owns `sim`, which must outlive the link. `config` is copied. */
 void sim_link_init(sim_link_t *link, sim_t *sim, const sim_link_config_t *config);
 
 /* `observer` is copied. */

@@ -50,18 +50,15 @@ static void log_mode(void *context, sim_mode_t from, sim_mode_t to, uint64_t now
 static void log_fault(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us)
 {
     report_t *report = context;
-    if (report->log != NULL) {
-        print_time(report, at_us);
-        fprintf(report->log, "fault %s %s\n", sim_link_kind_name(kind), begins ? "begins" : "ends");
-    }
+    print_time(report, at_us);
+    fprintf(report->log, "fault %s %s\n", sim_link_kind_name(kind), begins ? "begins" : "ends");
 }
 
 static void write_truth(void *context, const sim_link_packet_t *packet)
 {
     report_t *report = context;
     const sim_packet_t *sent = &packet->sent;
-    const unsigned lsn = sent->bytes[3];
-    for (unsigned i = 0; report->truth != NULL && i < lsn; i++) {
+    for (unsigned i = 0; i < sent->bytes[3]; i++) {
         const reference_point_t point = reference_point(sent->bytes, i);
         fprintf(report->truth, "%" PRIu32 ",%" PRIu32 ",%u,%u,%u,%u,%u,%d\n", sent->number,
                 sent->revolution, i, (unsigned)point.angle_q6, (unsigned)point.distance_mm,
@@ -88,8 +85,7 @@ bool report_open(report_t *report, const char *log_path, const char *truth_path,
 {
     const sim_observer_t device_observer = {
         .context = report, .on_command = log_command, .on_mode = log_mode};
-    const sim_link_observer_t link_observer = {
-        .context = report, .on_packet = write_truth, .on_fault = log_fault};
+    sim_link_observer_t link_observer = {.context = report};
     report->sim = sim;
     report->link = link;
     report->truth = NULL;
@@ -100,10 +96,12 @@ bool report_open(report_t *report, const char *log_path, const char *truth_path,
     if (report->log != NULL) {
         setvbuf(report->log, NULL, _IOLBF, BUFSIZ);
         sim_observe(sim, &device_observer);
+        link_observer.on_fault = log_fault;
     }
     if (report->truth != NULL) {
         fputs("packet,revolution,index,angle_q6,distance_mm,intensity,flag,intact\n",
               report->truth);
+        link_observer.on_packet = write_truth;
     }
     sim_link_observe(link, &link_observer);
     return true;

@@ -67,13 +67,11 @@ static int64_t distance_to_wall(const wall_t *wall, int64_t x, int64_t y)
 {
     const int64_t towards = wall->across ? y : x;
     const int64_t along = wall->across ? x : y;
-    int64_t distance;
-    int64_t place;
     if (towards == 0 || (towards > 0) != (wall->at > 0)) {
         return NOTHING;
     }
-    distance = wall->at * ONE_Q30 / towards;
-    place = distance * along / ONE_Q30;
+    const int64_t distance = wall->at * ONE_Q30 / towards;
+    const int64_t place = distance * along / ONE_Q30;
     return place >= wall->from && place <= wall->to ? distance : NOTHING;
 }
 

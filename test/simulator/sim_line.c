@@ -18,14 +18,13 @@ uint64_t sim_byte_us(uint64_t start_us, size_t offset)
 
 static uint16_t bytes_left(const sim_frame_t *frame, uint64_t now_us)
 {
-    uint32_t count;
     if (now_us <= frame->start_us) {
         return 0;
     }
     if (now_us - frame->start_us >= UINT32_C(50) * SIM_FRAME_MAX) {
         return frame->length;
     }
-    count = (uint32_t)(now_us - frame->start_us) * 72u / BYTE_US_TIMES_72;
+    const uint32_t count = (uint32_t)(now_us - frame->start_us) * 72u / BYTE_US_TIMES_72;
     return count < frame->length ? (uint16_t)count : frame->length;
 }
 
@@ -36,12 +35,11 @@ static sim_frame_t *frame_at(sim_line_t *line, uint32_t place)
 
 sim_frame_t *sim_line_open(sim_line_t *line)
 {
-    sim_frame_t *frame;
     if (sim_line_front(line) != NULL && line->count == SIM_LINE_FRAMES) {
         line->lost++;
         return NULL;
     }
-    frame = frame_at(line, line->count);
+    sim_frame_t *const frame = frame_at(line, line->count);
     frame->length = 0;
     frame->taken = 0;
     frame->packet_at = 0;
