@@ -4,7 +4,7 @@
 
 """Changes the sources in one small place at a time, and checks that a test notices the change.
 
-    mutation.py [--sample N [--seed S] [--tolerate N]] [--results FILE] [--killers] [--work DIR] [--list] [FILE …]
+    mutation.py [--sample N [--seed S]] [--results FILE] [--killers] [--work DIR] [--list] [FILE …]
 
 FILE is a source or a folder of sources: of the library (lib/src unless given), a port, an example, the simulated
 lidar, the Python package, the viewer. PLACES says which tests must notice a change there.
@@ -12,8 +12,8 @@ lidar, the Python package, the viewer. PLACES says which tests must notice a cha
 The project is copied to DIR (build-mutation, unless given) and built there, once. For each mutant, its file is
 replaced, Ninja builds the tests named like the source and ctest runs them, then all others. A mutant that no test
 notices is not counted if its optimised machine code equals the original's. Otherwise it is an error, unless
-test/qa/mutants.txt lists it with the reason why no test can, or --tolerate allows that many in a sample. An entry there
-is an error if its mutant no longer exists or, without --sample, if a test notices it.
+test/qa/mutants.txt lists it with the reason why no test can. An entry there is an error if its mutant no longer exists
+or, without --sample, if a test notices it.
 
 With --results, a run that was stopped can be continued; FILE gets a line for each mutant: its fate, and the change.
 With --killers, all tests run for each mutant, and its fate names the test functions that fail, as "program:function",
@@ -411,7 +411,6 @@ def main():
     parser = argparse.ArgumentParser(description="Changes sources in small places, and runs their tests.")
     parser.add_argument("--sample", type=int, help="only this many mutants, drawn at random")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tolerate", type=int, default=0, help="this many survivors are no error")
     parser.add_argument("--results", help="a file to which each mutant's fate is appended, and read from")
     parser.add_argument("--killers", action="store_true", help="runs all tests, and says which alone noticed mutants")
     parser.add_argument("--work", type=Path, default=ROOT / "build-mutation", help="the folder of the copy")
@@ -438,7 +437,7 @@ def main():
     noticed = [] if arguments.sample else sorted({mutant.key for mutant in mutants} & known.keys() - needed)
     for key in noticed:
         print(f"in {KNOWN}, but a test notices it: {key}")
-    sys.exit(1 if survivors > arguments.tolerate or stale or noticed else 0)
+    sys.exit(1 if survivors or stale or noticed else 0)
 
 
 if __name__ == "__main__":
