@@ -19,6 +19,7 @@ import pytest
 
 import tmini
 from conftest import RECORDINGS, SIM
+from lidar_bytes import packet
 from tmini._command import scans_of
 
 RECORDING = RECORDINGS / "sim-6hz.bin"
@@ -219,3 +220,12 @@ def test_hours_of_recording_become_a_file_in_constant_memory(command, room, tmp_
         assert command("mcap", path, room, "--force").wait(60) == 0
         peaks.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
     assert peaks[1] < peaks[0] + 8192  # In kB.
+
+
+def test_a_turn_of_unknown_frequency_becomes_a_message(run, room, tmp_path):
+    path, samples = tmp_path / "turn.bin", 3 * [(1000, 9, 0)]
+    path.write_bytes(packet(samples[:1], 0, 0, ct=1) + packet(samples, 90 * 64, 270 * 64))
+    assert [scan.frequency_hz for scan in tmini.read(path)] == [None]
+    assert run("mcap", path, room)[0] == 0
+    ((_, message),) = messages_in(room)
+    assert [message.ranges[ray] for ray in (0, 90, 180, 270)] == 4 * [1]
