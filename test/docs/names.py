@@ -55,7 +55,8 @@ def functions_in(document):
 found, public = list(links_and_paths()), set(declared()) - NOT_PUBLIC
 listed = {function for function in functions_in("docs/interface.md") if function.startswith("tmini_")}
 sources = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("lib/**/*.[ch]"))
-report([f"{name(path)}:{number}: {wrong}: {what}" for path, number, what, check in found if (wrong := check(path, what))]
+report([f"{name(path)}:{number}: {wrong}: {what}" for path, number, what, check in found
+        if (wrong := check(path, what))]
        + [f"docs/interface.md does not name {function}()" for function in sorted(public - listed)]
        + [f"docs/interface.md: no public function {function}()" for function in sorted(listed - public)]
        + [f"docs/design.md: no function {function}()" for function in functions_in("docs/design.md")

@@ -25,7 +25,8 @@ def spans(path):
     blocks, prose = parse(path)
     for block in blocks:
         if block.language == "sh":
-            yield from ((number, line.split(" #")[0]) for number, line in enumerate(block.text.splitlines(), block.number))
+            for number, line in enumerate(block.text.splitlines(), block.number):
+                yield number, line.split(" #")[0]
     for number, line in prose:
         yield from ((number, span) for span in re.findall(r"`([^`]+)`", line) if USE.match(span))
 
