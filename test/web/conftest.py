@@ -136,9 +136,6 @@ class Page(webdriver.Chrome):
         """The element's text, visible or not."""
         return self.run("return document.getElementById(arguments[0]).textContent", name)
 
-    def texts(self, names):
-        return [self.text(name) for name in names.split()]
-
     def number(self, name):
         text = self.text(name)
         return 0 if text == "–" else int(text)
