@@ -131,6 +131,9 @@ static int try_again(tmini_t *lidar)
     if (command->operation == TMINI_EVENT_FREQUENCY && !tmini_command_awaits_quiet(lidar)) {
         command->steps = (uint8_t)(command->steps + STEPS_IN_VAIN);
         command->asks = 0;
+        if (command->steps >= STEPS_MAX && command->phase == TMINI_PHASE_AWAITING) {
+            return TMINI_ERROR_TIMEOUT; /* Unlike a refusal this leaves the frequency unknown. */
+        }
         return ask(lidar);
     }
     if (command->attempts_left == 0) {
@@ -205,6 +208,9 @@ static int take_frequency(tmini_t *lidar, uint32_t frequency_chz)
     command->frequency_chz = (uint16_t)frequency_chz;
     if (command->operation == TMINI_EVENT_REBOOTED) {
         return TMINI_OK;
+    }
+    if (!command->is_repeated) {
+        command->asks = 0; /* They were for a lidar that boots. */
     }
     const bool may_be_late = command->phase == TMINI_PHASE_ASKING && command->is_repeated;
     if (!is_step && !may_be_late && tmini_command_has_frequency(lidar)) {

@@ -23,8 +23,8 @@ enum { REPLY_LENGTH = 0, REPLY_TYPE = 4 };
 
 /* -------------------------------------------------------------------------------- the checksum */
 
-/* The part of the checksum that comes from `count` samples (at least one): S1 and S2 go into the
- * low byte, S3 into the high byte (section 5). */
+/* The part of the checksum that comes from `count` samples (at least one), in the lowest 16 bits:
+ * S1 and S2 go into the low byte, S3 into the high byte (section 5). */
 static unsigned xor_samples(const uint8_t *sample, size_t count)
 {
     unsigned sum = 0;

@@ -129,14 +129,18 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_lidar_that_loses_its_power_between_steps_is_asked_until_it_answers,
         "idle set:800 >0D <600 +50 >0B +2000 29( >0D +250 ) >0D +250 !FAILED ?TIMEOUT #0"),
     ROW(a_lidar_that_is_deaf_after_each_step_gets_the_whole_time_again,
-        "idle set:800 >0D <600 +50 4( >0B +2000 29( >0D +250 ) >0D <600 +50 ) !FAILED ?REPLY #600"),
+        "idle set:800 >0D <600 +50 3( >0B +2000 29( >0D +250 ) >0D <600 +50 ) >0B +2000 !FAILED "
+        "?TIMEOUT #0"),
     ROW(the_longest_change_of_all_may_have_three_steps_in_vain,
         "idle set:1190 >0D <600 +50 3( >0B +2000 >0D <600 +50 ) >0B <700 +50 >0B <800 +50 >0B <900 "
         "+50 >0B <1000 +50 >0B <1100 +50 >09 <1110 +50 >09 <1120 +50 >09 <1130 +50 >09 <1140 +50 "
         ">09 <1150 +50 >09 <1160 +50 >09 <1170 +50 >09 <1180 +50 >09 <1190 +50 >0D <1190 "
         "!FREQUENCY"),
     ROW(a_last_question_without_an_answer_is_repeated_but_not_for_ever,
-        "idle set:700 >0D <600 +50 >0B <700 +50 5( >0D +2000 >0D <700 +50 ) !FAILED ?REPLY"),
+        "idle set:700 >0D <600 +50 >0B <700 +50 4( >0D +2000 >0D <700 +50 ) >0D +2000 !FAILED "
+        "?TIMEOUT #0"),
+    ROW(a_late_first_answer_leaves_all_questions_for_what_follows,
+        "idle set:700 29( >0D +250 ) >0D <600 +50 >0B <P >65 +50 28( >0D +250 ) >0D <600 +50 >0B"),
     ROW(a_packet_while_the_frequency_is_set_means_that_the_stop_was_lost,
         "idle set:700 >0D <P >65 +50 >0D <600 +50 >0B <P >65 +50 >0D <600 +50 >0B <600 !NONE <P "
         ">65 +50 >0D <700 +50 >0D <700 !FREQUENCY"),

@@ -121,8 +121,8 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_frequency_of_7_68_hz_is_known, /* 0x300. */
         "no-scans wish:770 idle start >0D <768 !FREQUENCY >60 <scan <S !STARTED turns:60:77"),
     ROW(what_is_not_known_to_be_set_is_asked_again_although_it_turns_well,
-        "wish:610 attempts:1 idle start >0D <65536 >65 +50 >60 <scan <S !STARTED !FAILED #0 "
-        "turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 "
+        "wish:610 attempts:1 idle start >0D <600 +50 >09 3( +2000 >0D <600 +50 >09 ) +2000 >65 +50 "
+        ">60 <scan <S !STARTED !FAILED #0 turns:16:60 <turn:60 !SCAN !PAUSED >65 +50 >0D <610 "
         "!FREQUENCY >60 <scan <S !STARTED"),
     ROW(a_unit_that_never_answers_is_asked_again_once,
         "wish:1000 idle start 30( >0D +250 ) >65 +50 >60 <S !STARTED !FAILED ?TIMEOUT turns:28:100 "
