@@ -75,7 +75,8 @@ def test_options_may_be_short_joined_and_abbreviated(sim, words):
     "--pty --fault drop", "--pty --fault dropp=1e-4", "--pty --fault drop=2", "--pty --speed 0", "--pty --seed -1",
     "--pty --health 0x40", "--pty --health -1", "--pty --health ill", "--write /dev/null", "--pty=yes", "--pty word",
     "--s 1",  # --samples, --seed, --seconds, --speed, --spin-up
-    "--pty --motor 0", "--pty --spin-up 61", "--write - --seconds 1 --log", "--lines --pty", "--lines --log -"])
+    "--pty --motor 0", "--pty --bridge x", "--pty --begin x",
+    "--pty --spin-up 61", "--write - --seconds 1 --log", "--lines --pty", "--lines --log -"])
 def test_wrong_usage_is_exit_status_2(sim, words):
     run = sim(*words.split()).finish()
     assert run.status == 2 and run.err.startswith("tmini-sim: ")

@@ -124,9 +124,6 @@ static bool listen_on(host_t *host, uint16_t port)
                                   .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)}};
     socklen_t length = sizeof address;
     host->listener = socket(AF_INET, SOCK_STREAM, 0);
-    if (host->listener < 0) {
-        return false;
-    }
     set_flag(host->listener, SOL_SOCKET, SO_REUSEADDR);
     if (bind(host->listener, (struct sockaddr *)&address, length) != 0 ||
         listen(host->listener, 4) != 0 ||

@@ -88,7 +88,6 @@ bool report_open(report_t *report, const char *log_path, const char *truth_path,
     sim_link_observer_t link_observer = {.context = report};
     report->sim = sim;
     report->link = link;
-    report->truth = NULL;
     if (!report_open_file(&report->log, log_path) ||
         !report_open_file(&report->truth, truth_path)) {
         return false;

@@ -751,6 +751,8 @@ static const row_t rows[] IN_FLASH = {
         "insert:1000 >60 +60000 begun.insert>679 begun.insert<881 truth unaccounted:0"),
     ROW(bursts_spoil_the_packets_they_touch,
         "burst:500 >60 +60000 begun.burst>79 begun.burst<161 truth spoilt>0 unaccounted:0"),
+    ROW(a_burst_ends_after_the_bytes_given,
+        "latency:20 >92 force:burst:3 +100 ended.burst:1 last_fault:20131 bytes:10"),
     ROW(a_cut_loses_the_rest_of_one_packet,
         "cut:500 >60 +60000 begun.cut>79 begun.cut<161 truth unexplained<2 unaccounted>0"),
     ROW(a_stall_makes_bytes_late_but_loses_none,
