@@ -7,6 +7,7 @@ has their words, in Page.play()."""
 import functools
 import http.server
 import os
+import pathlib
 import re
 import threading
 
@@ -277,13 +278,9 @@ def test_each_control_is_reached_and_used_by_keyboard(page):
 @pytest.mark.parametrize("settings", [{}, {"size": (390, 844), "colours": "light"}], ids=["wide", "phone"])
 def test_no_rule_of_axe_core_is_broken(page):
     """Including best practices, by the welcome page, a fault, and a lost lidar. test/run.sh --all brings axe-core."""
-    folder = os.environ.get("TMINI_AXE", "")
-    path = next((os.path.join(place, "axe.min.js") for place, _, files in os.walk(folder) if "axe.min.js" in files),
-                None)
-    if path is None:
+    program = next(pathlib.Path(os.environ["TMINI_AXE"]).rglob("axe.min.js"), None)
+    if program is None:
         pytest.skip("axe-core is not here (test/run.sh --all brings it)")
-    with open(path, encoding="utf-8") as file:
-        program = file.read()
     page.run("""for (const [words, ground] of arguments[0]) {  // As in the picture, which axe-core cannot read.
             document.querySelector('main').prepend(Object.assign(document.createElement('p'), {
                 textContent: words, style: `color: var(--${words}); background: var(--${ground})` }));
@@ -291,7 +288,8 @@ def test_no_rule_of_axe_core_is_broken(page):
     for story in ("shown welcome", "simulate; state: scanning; sim-blocked; fault: encoder",
                   "sim-unplugged; age: No scan for"):
         page.play(story)
-        page.run("document.head.append(Object.assign(document.createElement('script'), {text: arguments[0]}))", program)
+        page.run("document.head.append(Object.assign(document.createElement('script'), {text: arguments[0]}))",
+                 program.read_text(encoding="utf-8"))
         passed, broken = page.run("""return axe.run().then(({ violations, passes }) => [passes.length,
             violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 120)}`))])""")
         assert broken == [] and passed > 20
@@ -330,16 +328,10 @@ def test_its_policy_forbids_all_that_it_does_not_need(page):
 
 
 def test_it_works_from_a_server(page):
-    seen = []
-
-    class Handler(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, *_):
-            seen.append(self.path)
-
-    handler = functools.partial(Handler, directory=str(PAGE.parent))
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=str(PAGE.parent))
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         page.open(f"http://127.0.0.1:{server.server_port}/{PAGE.name}")
         page.play("simulate; state: scanning; 1 scans")
         server.shutdown()
-    assert seen == [f"/{PAGE.name}"]
+    assert requests(page) == {page.current_url}
