@@ -171,6 +171,8 @@ static const row_t tales[] IN_FLASH = {
         "wish:640 idle start >0D <640 !FREQUENCY set-to:640:100 waited:0 @STARTING >60"),
     ROW(the_same_frequency_is_waited_for_while_a_start_asks_for_it,
         "wish:640 idle start >0D in:5:640 set-to:640:100 waited:5 >60"),
+    ROW(a_frequency_is_waited_for_though_an_attempt_to_start_fails,
+        "idle start >0D <600 >60 in:2560:700 set-to:700:4000 >65 >0D >60 #700"),
     ROW(a_frequency_waits_for_the_end_of_another_command,
         "idle info >90 in:5:info answers:600 set-to:600:100 >0D @IDLE"),
     ROW(a_frequency_of_a_scanning_lidar_is_waited_for,
