@@ -203,7 +203,7 @@ static const row_t tales[] IN_FLASH = {
     /* ---- Failures ---- */
     ROW(a_timeout_gives_the_command_up_and_the_next_one_stops_the_lidar_first,
         "idle read-info:100=TIMEOUT >90 waited:100 @UNKNOWN !NONE in:55:info read-info:100 >65 "
-        ">90"),
+        ">90 / idle read-frequency:100=TIMEOUT >0D @UNKNOWN"),
     ROW(a_wait_may_be_longer_than_a_minute, /* 70,000 ms are 4464 in 16 bits. */
         "reply:0 idle read-info:70000=TIMEOUT >90 waited:70000"),
     ROW(time_runs_across_the_clocks_wrap_around,

@@ -565,6 +565,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(each_of_several_overflows_leaves_its_gap_where_it_was, /* Before all has been read. */
         "<start <start <zeros:231 !1 gap:0 <start !1 gap:0 !none overrun:14 2( <start <start "
         "<zeros:231 !1 gap:65535 <start !1 gap:0 !none ) overrun:42"),
+    ROW(a_packet_that_is_just_complete_before_a_gap_is_found,
+        "<manual:40 !none <manual+40 gap !19@0 !none skipped:0"),
     ROW(no_packet_spans_a_gap, /* The bytes before it and those after it would form one. */
         "<manual:40 !none gap !none skipped:40 <manual+40 !none skipped:67 <start !1 gap:65535"),
     ROW(packets_before_and_after_an_overflow_are_found, /* The fourth is cut by 12 bytes. */
