@@ -19,12 +19,16 @@
 static uint8_t area[3 * SIZE];
 static uint8_t *const memory = &area[SIZE];
 static tmini_ring_t ring;
-static const uint8_t letters[] = "abcdefghijklmnopqrstuvwxyz";
+
+static void init(size_t size, bool dma)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, size, dma));
+}
 
 void setUp(void)
 {
     memset(area, GUARD, sizeof area);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, false));
+    init(SIZE, false);
 }
 
 void tearDown(void)
@@ -33,24 +37,12 @@ void tearDown(void)
     TEST_ASSERT_EACH_EQUAL_HEX8(GUARD, &area[2 * SIZE], SIZE);
 }
 
-static void use_dma(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE, true));
-}
-
 /* Sets the indices as after `count` bytes were written and read. */
 static void age(size_t count)
 {
     ring.head = count;
     ring.stop = count;
     ring.tail = count;
-}
-
-static void put_letters(size_t first, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        tmini_ring_put(&ring, letters[first + i]);
-    }
 }
 
 static void expect_unread(const char *expected)
@@ -62,150 +54,28 @@ static void expect_unread(const char *expected)
     }
 }
 
-/* ---------------------------------------------------------------------------------------- init */
-
-static void expect_refused_arguments(uint8_t *bytes, size_t size)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, false));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, true));
-}
-
-void test_no_memory_or_a_size_that_is_no_power_of_two_is_an_argument_error(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(NULL, memory, SIZE, false));
-    expect_refused_arguments(NULL, SIZE);
-    expect_refused_arguments(memory, 0);
-    expect_refused_arguments(memory, 1); /* The indices could not distinguish full from empty. */
-    expect_refused_arguments(memory, 3);
-    expect_refused_arguments(memory, 12);
-    expect_refused_arguments(memory, 15);
-    expect_refused_arguments(memory, SIZE_MAX);
-    expect_refused_arguments(memory, SIZE_MAX / 2 + 1);
-    expect_refused_arguments(memory, SIZE_MAX / 4 + 1);
-}
-
-void test_the_largest_size_is_an_eighth_of_what_an_index_can_count(void)
-{
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, SIZE_MAX / 8 + 1, false));
-    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 8 + 1, tmini_ring_room(&ring));
-    tmini_ring_gap(&ring);
-    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
-}
-
-void test_every_power_of_two_is_a_size(void)
-{
-    for (size_t size = 2; size <= SIZE; size *= 2) {
-        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, memory, size, false));
-        put_letters(0, SIZE + 1);
-        TEST_ASSERT_EQUAL_UINT(size, tmini_ring_unread(&ring));
-    }
-}
-
-/* No call in any order stores a byte. */
-void test_a_ring_without_memory_refuses_every_byte(void)
-{
-    for (unsigned failed = 0; failed <= 1; failed++) {
-        if (failed) {
-            put_letters(0, 3);
-            (void)tmini_ring_init(&ring, memory, 12, false);
-        } else {
-            ring = (tmini_ring_t){0};
-        }
-        tmini_ring_publish(&ring, 3);
-        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
-        tmini_ring_put(&ring, 'a');
-        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_write(&ring, letters, 5));
-        tmini_ring_gap(&ring);
-        tmini_ring_publish(&ring, 3);
-        tmini_ring_put(&ring, 'b');
-        TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
-        TEST_ASSERT_EQUAL_UINT(7, tmini_ring_overrun(&ring));
-        setUp();
-    }
-}
-
-/* ------------------------------------------------------------------------------------ CPU-fed */
-
-/* Also across the end of the memory and the wraparound of size_t. */
-void test_bytes_and_blocks_in_turn_lose_nothing_at_any_place(void)
-{
-    uint8_t put = 0;
-    uint8_t taken = 0;
-    age(SIZE_MAX - 5 * SIZE + 3);
-    for (unsigned round = 0; round < 1000; round++) {
-        const uint8_t block[] = {(uint8_t)(put + 1), (uint8_t)(put + 2), (uint8_t)(put + 3)};
-        tmini_ring_put(&ring, put);
-        put = (uint8_t)(put + 1 + tmini_ring_write(&ring, block, round % 4));
-        while (tmini_ring_unread(&ring) > round % 7) {
-            TEST_ASSERT_EQUAL_HEX8(taken++, tmini_ring_peek(&ring, 0));
-            tmini_ring_discard(&ring, 1);
-        }
-    }
-    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
-}
-
-/* -------------------------------------------------------------------------------- a closed ring */
-
-/* Each time the indices move by a quarter of their range, so after four times they have wrapped. */
-void test_a_ring_may_be_closed_and_opened_any_number_of_times(void)
-{
-    const size_t begin = SIZE_MAX - 2;
-    age(begin);
-    for (size_t time = 1; time <= 9; time++) {
-        put_letters(0, SIZE + 1);
-        TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
-        expect_unread("abcdefghijklmnop");
-        TEST_ASSERT_TRUE(tmini_ring_intact(&ring));
-        tmini_ring_discard(&ring, SIZE);
-        expect_unread("");
-        put_letters(0, 1);
-        tmini_ring_open(&ring);
-        TEST_ASSERT_FALSE(tmini_ring_is_closed(&ring));
-        TEST_ASSERT_EQUAL_UINT(SIZE, tmini_ring_room(&ring));
-        TEST_ASSERT_EQUAL_UINT(2 * time, tmini_ring_overrun(&ring));
-        TEST_ASSERT_EQUAL_UINT(time * SIZE, tmini_ring_distance(begin, tmini_ring_head(&ring)));
-        TEST_ASSERT_EQUAL_UINT(time * SIZE, tmini_ring_distance(begin, tmini_ring_tail(&ring)));
-    }
-}
-
-void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
-{
-    ring.overrun = SIZE_MAX - 1;
-    put_letters(0, SIZE + 1);
-    TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_overrun(&ring));
-    tmini_ring_write(&ring, letters, SIZE_MAX / 2); /* Closed: none of them is read. */
-    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 2 - 1, tmini_ring_overrun(&ring));
-}
-
-/* ----------------------------------------------------------------------------------------- DMA */
-
-/* This is a wrong use, but must do no harm: tearDown() checks the guards. */
-void test_bytes_put_into_a_dma_ring_stay_inside_its_memory(void)
-{
-    use_dma();
-    for (size_t i = 0; i < 5 * SIZE; i++) {
-        put_letters(0, 1);
-        tmini_ring_gap(&ring);
-        put_letters(0, 1);
-        tmini_ring_publish(&ring, (3 * i) % SIZE);
-        tmini_ring_discard(&ring, tmini_ring_unread(&ring));
-    }
-}
-
 /* ---------------------------------------------------------------------------------------- rows */
 
 /* Words of the rows:
  *
  *     put:abc write:abc=2     these bytes come one by one; as a block, of which two are stored
- *     dma age:-3      the ring is one for DMA; its indices are 3 before their wraparound
+ *     init:8 dma      the ring is set up, with 8 bytes of memory; with all 16 and for DMA
+ *     no:12 no-memory blank   a size, and a NULL, that it refuses; it was not set up
+ *     large:512:256   it has 512 bytes, of which only the 16 from 256 on have memory
+ *     age:-3 tail-at:0        the indices are 3 before their wraparound; the tail alone is set
  *     at:8:abc        DMA writes there and publishes its position; publish:11
- *     discard:2 gap open init     calls
+ *     discard:2 gap open      calls
  *     unread:abc memory:abc   what is unread, what the memory begins with
  *     peek:5:a copy:2:cde     the byte with this offset; a copy of bytes from there on
  *     piece:2:9=5     of 9 bytes from offset 2 on, 5 lie in one piece
  *     overrun:1 room:16 …     see tell_word() */
+
+static void refuse(uint8_t *bytes, size_t size)
+{
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(NULL, bytes, size, false));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, false));
+    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_ring_init(&ring, bytes, size, true));
+}
 
 static void tell_write(const char *text)
 {
@@ -243,6 +113,15 @@ static void expect_piece(size_t offset, const char *text)
     TEST_ASSERT_EQUAL_UINT(strtoul(rest + 1, NULL, 10), count);
 }
 
+/* Its indices are at `place`. */
+static void use_large(size_t size, size_t place)
+{
+    uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
+    memset(memory, GUARD, SIZE);
+    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, first, size, false));
+    age(place);
+}
+
 static void tell_word(char *word)
 {
     const row_number_t numbers[] = {
@@ -250,6 +129,7 @@ static void tell_word(char *word)
         {"room", tmini_ring_room(&ring)},
         {"count", tmini_ring_unread(&ring)},
         {"head", tmini_ring_distance(0, tmini_ring_head(&ring))},
+        {"tail", tmini_ring_distance(0, tmini_ring_tail(&ring))},
         {"window", ring.window},
         {"closed", tmini_ring_is_closed(&ring)},
         {"full", tmini_ring_is_full(&ring)},
@@ -264,8 +144,16 @@ static void tell_word(char *word)
         }
     } else if (row_is(word, "write")) {
         tell_write(text);
-    } else if (row_is(word, "dma")) {
-        use_dma();
+    } else if (row_is(word, "init") || row_is(word, "dma")) {
+        init(number > 0 ? number : SIZE, word[0] == 'd');
+    } else if (row_is(word, "no") || row_is(word, "no-memory")) {
+        refuse(word[2] == ':' ? memory : NULL, word[2] == ':' ? number : SIZE);
+    } else if (row_is(word, "blank")) {
+        ring = (tmini_ring_t){0};
+    } else if (row_is(word, "large")) {
+        use_large(number, (size_t)strtol(rest, NULL, 10));
+    } else if (row_is(word, "tail-at")) {
+        ring.tail = number;
     } else if (row_is(word, "age")) {
         age(number);
     } else if (row_is(word, "at")) {
@@ -278,8 +166,6 @@ static void tell_word(char *word)
         tmini_ring_gap(&ring);
     } else if (row_is(word, "open")) {
         tmini_ring_open(&ring);
-    } else if (row_is(word, "init")) {
-        setUp();
     } else if (row_is(word, "unread")) {
         expect_unread(text);
     } else if (row_is(word, "memory")) {
@@ -298,8 +184,19 @@ static void tell_word(char *word)
 /* It fills the ring. */
 #define ALL "abcdefghijklmnop"
 #define PUT_ALL "put:" ALL " "
+#define TAKES_NOTHING \
+    "publish:3 count:0 put:a write:abcde=0 gap publish:3 put:b count:0 room:0 overrun:7 "
+#define IS_RIGHT "write:abc=3 put:de memory:abcde unread:abcde copy:0:abcde "
 
 static const row_t rows[] IN_FLASH = {
+    /* ---- Setting up ---- */
+    ROW(no_memory_or_a_size_that_is_no_power_of_two_is_an_argument_error,
+        "no-memory no:0 no:1 no:3 no:12 no:15 no:-1"), /* 1: full would be like empty. */
+    ROW(every_power_of_two_is_a_size,
+        "init:2 " PUT_ALL "count:2 init:4 " PUT_ALL "count:4 init:8 " PUT_ALL
+        "count:8 init:16 " PUT_ALL "put:q count:16"),
+    ROW(a_ring_without_memory_refuses_every_byte, /* No call in any order stores one. */
+        "blank " TAKES_NOTHING "init put:abc no:12 " TAKES_NOTHING),
     /* ---- Filled by a CPU ---- */
     ROW(bytes_come_out_in_the_order_in_which_they_went_in,
         "put:abc unread:abc discard:1 unread:bc put:d unread:bcd discard:3 unread:"),
@@ -343,6 +240,9 @@ static const row_t rows[] IN_FLASH = {
         "age:5 " PUT_ALL "piece:2:10=9 piece:11:5=5"),
     ROW(initialisation_empties_a_ring, PUT_ALL "put:q init unread: overrun:0"),
     /* ---- A closed ring ---- */
+    ROW(a_ring_may_be_closed_and_opened_any_number_of_times, /* After four, the indices wrap. */
+        "age:-3 9( " PUT_ALL "put:q closed:1 unread:" ALL " intact:1 discard:16 unread: put:a open "
+        "closed:0 room:16 ) overrun:18 head:141 tail:141"),
     ROW(a_closed_ring_that_is_closed_again_stays_so,
         "put:abc gap gap put:x unread:abc discard:3 open put:de unread:de"),
     ROW(a_refused_byte_closes_the_ring_however_much_room_there_is_then, /* Full is not closed. */
@@ -377,6 +277,15 @@ static const row_t rows[] IN_FLASH = {
         PUT_ALL "put:q intact:1 dma at:0:abcdefgh intact:1 at:8:i intact:0 discard:1 intact:1"),
     ROW(dma_positions_are_right_across_the_wrap_of_size_t, /* Position 13. */
         "dma age:-3 at:13:abcdefg unread:abcdefg discard:5 at:4:hijk unread:fghijk"),
+    /* ---- Large rings ---- */
+    ROW(places_beyond_8_bits_are_not_cut,
+        "large:512:256 " IS_RIGHT "piece:0:512=256 tail-at:0 peek:256:a piece:256:512=256 "
+        "large:512:256 tail-at:-255 put:ab overrun:1"), /* Room for one byte. */
+#if SIZE_MAX > 65535
+    ROW(places_beyond_16_bits_are_not_cut,
+        "large:131072:65536 " IS_RIGHT "piece:0:131072=65536 tail-at:0 peek:65536:a "
+        "piece:65536:131072=65536 large:131072:65536 tail-at:-65535 put:ab overrun:1"),
+#endif
 };
 
 void test_rows(void)
@@ -384,45 +293,56 @@ void test_rows(void)
     tell_rows(rows, tell_word);
 }
 
-/* -------------------------------------------------------------------------------- large rings */
+/* ------------------------------------------------------------------------ what words cannot say */
 
-/* A ring of this size. Only the 16 bytes from `place` on have memory. */
-static void use_large(size_t size, size_t place)
+void test_the_largest_size_is_an_eighth_of_what_an_index_can_count(void)
 {
-    uint8_t *const first = (uint8_t *)((uintptr_t)memory - place);
-    memset(memory, GUARD, SIZE);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_ring_init(&ring, first, size, false));
-    age(place);
+    refuse(memory, SIZE_MAX / 2 + 1);
+    refuse(memory, SIZE_MAX / 4 + 1);
+    init(SIZE_MAX / 8 + 1, false);
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 8 + 1, tmini_ring_room(&ring));
+    tmini_ring_gap(&ring);
+    TEST_ASSERT_TRUE(tmini_ring_is_closed(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_unread(&ring));
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_room(&ring));
 }
 
-static void bytes_are_right_at(size_t size, size_t place)
+/* Also across the end of the memory and the wraparound of size_t. */
+void test_bytes_and_blocks_in_turn_lose_nothing_at_any_place(void)
 {
-    uint8_t copy[5] = {0};
-    size_t count = size;
-    use_large(size, place);
-    TEST_ASSERT_EQUAL_UINT(3, tmini_ring_write(&ring, letters, 3));
-    put_letters(3, 2);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY("abcde", memory, 5);
-    expect_unread("abcde");
-    tmini_ring_copy(&ring, 0, copy, 5);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY("abcde", copy, 5);
-    TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, 0, &count));
-    TEST_ASSERT_EQUAL_UINT(size - place, count);
-    ring.tail = 0;
-    TEST_ASSERT_EQUAL_INT('a', tmini_ring_peek(&ring, place));
-    TEST_ASSERT_EQUAL_PTR(memory, tmini_ring_piece(&ring, place, &count));
-    use_large(size, place);
-    ring.tail = place + 1 - size; /* Room for one byte. */
-    put_letters(0, 2);
-    TEST_ASSERT_EQUAL_UINT(1, tmini_ring_overrun(&ring));
+    uint8_t put = 0;
+    uint8_t taken = 0;
+    age(SIZE_MAX - 5 * SIZE + 3);
+    for (unsigned round = 0; round < 1000; round++) {
+        const uint8_t block[] = {(uint8_t)(put + 1), (uint8_t)(put + 2), (uint8_t)(put + 3)};
+        tmini_ring_put(&ring, put);
+        put = (uint8_t)(put + 1 + tmini_ring_write(&ring, block, round % 4));
+        while (tmini_ring_unread(&ring) > round % 7) {
+            TEST_ASSERT_EQUAL_HEX8(taken++, tmini_ring_peek(&ring, 0));
+            tmini_ring_discard(&ring, 1);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(0, tmini_ring_overrun(&ring));
 }
 
-void test_places_beyond_8_and_16_bits_are_not_cut(void)
+void test_the_count_of_refused_bytes_wraps_around_with_size_t(void)
 {
-    bytes_are_right_at(512, 256);
-#if SIZE_MAX > 65535
-    bytes_are_right_at(131072, 65536);
-#endif
+    ring.overrun = SIZE_MAX - 1;
+    row_tell(PUT_ALL "put:q", tell_word);
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX, tmini_ring_overrun(&ring));
+    tmini_ring_write(&ring, memory, SIZE_MAX / 2); /* Closed: none of them is read. */
+    TEST_ASSERT_EQUAL_UINT(SIZE_MAX / 2 - 1, tmini_ring_overrun(&ring));
+}
+
+/* This is a wrong use, but must do no harm: tearDown() checks the guards. */
+void test_bytes_put_into_a_dma_ring_stay_inside_its_memory(void)
+{
+    init(SIZE, true);
+    for (size_t i = 0; i < 5 * SIZE; i++) {
+        row_tell("put:a gap put:a", tell_word);
+        tmini_ring_publish(&ring, (3 * i) % SIZE);
+        tmini_ring_discard(&ring, tmini_ring_unread(&ring));
+    }
 }
 
 /* Too large for a small machine. */
