@@ -13,10 +13,10 @@
  *
  * campaign soak HOURS [SEED]    see soak.c */
 
+#include "campaign.h"
+
 #include "bed.h"
-#include "holes.h"
 #include "interrupting_atomic.h"
-#include "soak.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,38 +28,47 @@
 #define SILENCE_MS 300u /* Longer than the parser waits for the rest of a packet. */
 #define MOST_TURNS 20u
 #define MOST_HOLES 4u
+#define MOST_LAPS 9u     /* That DMA receives while the CPU stops. */
 #define MOST_WRONGS 100u /* Then a mode ends: to look at each takes long. */
 #define SPIN_UP_CHZ 240u
 #define PACKETS_SIZE 230u /* Of the one that waits, and of what comes during the next poll. */
 
-/* Reasons why an incomplete scan may have points of two turns. */
+/* What is counted, and as what it is printed. */
 typedef enum {
-    MIXED_UNTIMED, /* max_pause_ms is 0: pauses are not judged. */
-    MIXED_UNSEEN,  /* A poll or a hand-over between the two may have come late. */
-    MIXED_DRIBBLE, /* Remains of damaged packets: each silence was shorter than max_pause_ms. */
-    MIXED_KINDS
-} mixed_t;
+    SCANS,
+    COMPLETE,
+    UNTOUCHED,     /* Turns. */
+    INTACT,        /* Points of packets certainly without losses. */
+    IN_ONE,        /* Those of them that are in exactly one scan. */
+    WITHHELD,      /* Points that the library withheld, because the program was behind. */
+    MIXED_UNTIMED, /* Incomplete scans may mix turns: max_pause_ms is 0; */
+    MIXED_UNSEEN,  /* a poll or a hand-over between the two may have come late; */
+    MIXED_DRIBBLE, /* remains of damaged packets: each silence was shorter than max_pause_ms. */
+    SUMS
+} sum_t;
+
+static const char *const sum_names[SUMS] = {
+    "scans",
+    "of them complete",
+    "turns came whole for certain",
+    "intact points",
+    "of them in exactly one scan",
+    "points withheld",
+    "incomplete of two turns: pauses are not judged",
+    "incomplete of two turns: a poll or hand-over came late",
+    "incomplete of two turns: silences too short to count",
+};
 
 typedef struct {
     const char *name;
     const char *what;
-    bool interrupts_line;
-    bool costs_nothing; /* Each turn without losses must be delivered as complete. */
+    enum {
+        WHOLE, /* Each turn without losses must be delivered as complete. */
+        LINE,  /* The line has holes. */
+        OTHER
+    } losses;
     void (*draw)(void);
 } campaign_mode_t;
-
-typedef struct {
-    uint64_t trials, scans, complete, points, bytes, overrun, gaps;
-    uint64_t untouched; /* Turns certainly without losses. */
-    uint64_t invisible; /* Scans reported complete whose missing samples cannot be noticed. */
-    uint64_t by_chance; /* Lies after damage that left a checksum right. */
-    uint64_t intact;    /* Points of packets certainly without losses. */
-    uint64_t in_one;    /* Those of them that are in exactly one scan. */
-    uint64_t withheld;  /* Points that the library withheld, because the program was behind. */
-    uint64_t mixed[MIXED_KINDS];
-    uint64_t wrongs[WRONG_KINDS];
-    uint64_t first_trial[WRONG_KINDS]; /* The first trial with this error. */
-} verdicts_t;
 
 /* The controller: bed, held, and this. */
 static struct {
@@ -69,7 +78,6 @@ static struct {
     uint32_t handle_one_in;  /* It works on one scan in N; 0: on none. */
     uint32_t preempt_us;     /* The longest pre-emption of a poll. */
     uint32_t preempt_one_in; /* One poll in N is pre-empted; 0: none. */
-    uint32_t stall_laps;     /* While the CPU stops, DMA receives up to this many laps. */
     uint32_t stall_one_in;   /* The CPU stops in one poll or pause in N; 0: never. */
 } program;
 
@@ -86,17 +94,16 @@ static struct {
 static bed_t bed;
 static bed_held_t held;
 static watch_t watch;
-static holes_t holes;
 static uint8_t rx[65536];
 static tmini_point_t points[POINTS];
-static verdicts_t verdicts;
 
 random_t dice;
 
-static uint32_t below(uint32_t limit)
-{
-    return random_below(&dice, limit);
-}
+static struct {
+    uint64_t sums[SUMS];
+    uint64_t wrongs[WRONG_KINDS];
+    uint64_t first_trial[WRONG_KINDS]; /* The first trial with this error. */
+} verdicts;
 
 /* ---- Random settings: those of all modes, then those of each mode ---- */
 
@@ -107,12 +114,11 @@ static uint32_t one_of(const uint32_t *values, size_t count)
 
 static sim_config_t draw_lidar(void)
 {
-    static const uint32_t frequencies[] = {600, 800, 1000, 1200};
     sim_config_t lidar = sim_default_config();
     lidar.seed = random_u64(&dice);
     lidar.marked = true;
     lidar.ct_information = one_in(2);
-    lidar.frequency_chz = (uint16_t)one_of(frequencies, 4);
+    lidar.frequency_chz = (uint16_t)one_of((const uint32_t[]){600, 800, 1000, 1200}, 4);
     lidar.start_angle_q6 = (uint16_t)(one_in(2) ? 0 : below(23040));
     lidar.lone_packet_permille = 3;
     lidar.first_packet_ms = 12;
@@ -120,28 +126,18 @@ static sim_config_t draw_lidar(void)
     return lidar;
 }
 
-static void feed_by_blocks(void)
-{
-    bed.held = &held;
-    bed.config.rx_dma = false;
-}
+typedef enum { BYTES, BLOCKS, DMA } feed_t;
 
-static void feed_by_dma(void)
+static void feed_by(feed_t feed)
 {
-    bed.held = NULL;
-    bed.config.rx_dma = true;
+    bed.held = feed == BLOCKS ? &held : NULL;
+    bed.config.rx_dma = feed == DMA;
 }
 
 /* A controller that keeps up. */
 static void draw_program(void)
 {
-    static const uint32_t accesses_ns[] = {50, 200, 1000, 3000};
-    const uint32_t feed = below(3);
-    if (feed == 1) {
-        feed_by_blocks();
-    } else if (feed == 2) {
-        feed_by_dma();
-    } /* Otherwise by an interrupt per byte. */
+    feed_by((feed_t)below(3));
     bed.config.rx_size = bed.config.rx_dma ? 2048 : 1024;
     bed.poll_ms = between(1, 20);
     bed.clock_ms = random_u32(&dice); /* It may wrap around. */
@@ -153,7 +149,7 @@ static void draw_program(void)
     held.ignores_room = one_in(2);
     held.is_mute = one_in(2);
     held.reported_max = SIZE_MAX;
-    program.access_ns = one_of(accesses_ns, 4);
+    program.access_ns = one_of((const uint32_t[]){50, 200, 1000, 3000}, 4);
     program.preempt_us = 5000;
     program.preempt_one_in = 20;
 }
@@ -164,7 +160,7 @@ static void draw_nothing(void) {}
  * reports its bytes. */
 static void draw_bridged(void)
 {
-    feed_by_blocks();
+    feed_by(BLOCKS);
     bed.poll_ms = between(1, 10);
     held.every_us = between(200, 2000);
     held.ignores_room = false;
@@ -196,9 +192,8 @@ static void draw_overflow(void)
 
 static void draw_stalls(void)
 {
-    feed_by_dma();
+    feed_by(DMA);
     bed.config.rx_size = (size_t)1 << between(9, 13);
-    program.stall_laps = 9;
     bed.false_gap_one_in = one_in(2) ? 100 : 0;
     program.stall_one_in = between(50, 400);
     program.preempt_one_in = between(20, 400);
@@ -207,7 +202,7 @@ static void draw_stalls(void)
 /* The task that hands over bytes is delayed again and again. */
 static void draw_hold_ups(void)
 {
-    feed_by_blocks();
+    feed_by(BLOCKS);
     bed.config.rx_size = (size_t)1 << between(10, 16);
     bed.poll_ms = 1;
     held.every_us = 1000;
@@ -218,15 +213,13 @@ static void draw_hold_ups(void)
 /* The program polls rarely, and the ring is large. */
 static void draw_rare_polls(void)
 {
-    static const uint32_t polls_ms[] = {100, 350, 500, 700, 1100};
-    bed.poll_ms = one_of(polls_ms, 5);
+    bed.poll_ms = one_of((const uint32_t[]){100, 350, 500, 700, 1100}, 5);
     bed.config.rx_size = (size_t)1 << between(13, 16);
 }
 
 static void draw_limits(void)
 {
-    static const uint32_t limits_ms[] = {0, 70, 250};
-    bed.timing.max_pause_ms = (uint16_t)one_of(limits_ms, 3);
+    bed.timing.max_pause_ms = (uint16_t)one_of((const uint32_t[]){0, 70, 250}, 3);
     bed.config.rx_size = (size_t)1 << between(11, 16);
     if (one_in(3)) {
         draw_hold_ups();
@@ -236,7 +229,7 @@ static void draw_limits(void)
 /* A layer below holds all bytes, and the program fetches them only from time to time. */
 static void draw_held(void)
 {
-    feed_by_blocks();
+    feed_by(BLOCKS);
     bed.config.rx_size = 8192;
     held.every_us = 0;
     bed.polls_first = true; /* A useless poll. */
@@ -263,26 +256,21 @@ static void draw_everything(void)
 }
 
 static const campaign_mode_t modes[] = {
-    {"healthy", "nothing goes wrong", false, true, draw_nothing},
-    {"held", "nothing goes wrong; 100 to 250 ms between polls, bytes held below", false, true,
-     draw_held},
+    {"healthy", "nothing goes wrong", WHOLE, draw_nothing},
+    {"held", "nothing goes wrong; 100 to 250 ms between polls, bytes held below", WHOLE, draw_held},
     {"bridged",
-     "nothing goes wrong; the program is busy for as long as a layer below can hold bytes", false,
-     true, draw_bridged},
-    {"pause", "the line falls silent for 0 to 5 turns", true, false, draw_nothing},
-    {"hold-up", "the same; polled each millisecond, and what comes is held up for 20 to 95 ms",
-     true, false, draw_hold_ups},
-    {"rare", "the same; polled each 100 to 1100 ms, ring of 8192 to 65536", true, false,
-     draw_rare_polls},
-    {"limits", "the same; max_pause_ms of 0, 70 or 250", true, false, draw_limits},
-    {"waiting", "the same, while a layer below holds bytes and reports them", true, false,
+     "nothing goes wrong; the program is busy for as long as a layer below can hold bytes", WHOLE,
      draw_bridged},
-    {"set back", "the same, and once the clock steps back by up to a second", true, false,
-     draw_set_back},
-    {"overflow", "the program is busy for 1 to 600 ms, ring of 256 to 8192", false, false,
-     draw_overflow},
-    {"stall", "DMA goes on for 0 to 9 laps while the CPU stands still", false, false, draw_stalls},
-    {"mixed", "all of it at once", true, false, draw_everything},
+    {"pause", "the line falls silent for 0 to 5 turns", LINE, draw_nothing},
+    {"hold-up", "the same; polled each millisecond, and what comes is held up for 20 to 95 ms",
+     LINE, draw_hold_ups},
+    {"rare", "the same; polled each 100 to 1100 ms, ring of 8192 to 65536", LINE, draw_rare_polls},
+    {"limits", "the same; max_pause_ms of 0, 70 or 250", LINE, draw_limits},
+    {"waiting", "the same, while a layer below holds bytes and reports them", LINE, draw_bridged},
+    {"set back", "the same, and once the clock steps back by up to a second", LINE, draw_set_back},
+    {"overflow", "the program is busy for 1 to 600 ms, ring of 256 to 8192", OTHER, draw_overflow},
+    {"stall", "DMA goes on for 0 to 9 laps while the CPU stands still", OTHER, draw_stalls},
+    {"mixed", "all of it at once", LINE, draw_everything},
 };
 
 #define MODES (sizeof modes / sizeof modes[0])
@@ -296,7 +284,7 @@ static bool stalls(void)
     if (!bed.config.rx_dma || !one_in(program.stall_one_in)) {
         return false;
     }
-    const uint32_t laps = between(0, program.stall_laps);
+    const uint32_t laps = between(0, MOST_LAPS);
     const uint32_t most = one_in(2) ? lap : 64;
     bed_stall(&bed, laps * (uint64_t)lap + below(most));
     return true;
@@ -363,14 +351,14 @@ static bool may_be_overwritten(void)
 }
 
 /* Returns why one incomplete scan may have points of two turns: something is lost between them, and
- * the library measures a silence only by the times of polls and hand-overs. MIXED_KINDS: nothing
+ * the library measures a silence only by the times of polls and hand-overs. SUMS: nothing
  * explains it. */
-static mixed_t explain(const sim_reading_t *reading)
+static sum_t explain(const sim_reading_t *reading)
 {
     const uint32_t pause_us = bed.timing.max_pause_ms * 1040u + bed.poll_ms * 1000u +
                               program.preempt_us + (bed.held != NULL ? held.every_us : 0) + 10000u;
     if (!is_touched(reading->before) && !is_touched(reading->odd) && !may_be_overwritten()) {
-        return MIXED_KINDS;
+        return SUMS;
     }
     if (bed.timing.max_pause_ms == 0) {
         return MIXED_UNTIMED;
@@ -378,30 +366,24 @@ static mixed_t explain(const sim_reading_t *reading)
     if (may_be_late()) {
         return MIXED_UNSEEN;
     }
-    return holes_longest_us(&holes, came_us(reading->before), came_us(reading->odd)) < pause_us
+    return holes_longest_us(came_us(reading->before), came_us(reading->odd)) < pause_us
                ? MIXED_DRIBBLE
-               : MIXED_KINDS;
+               : SUMS;
 }
 
 /* While the program works on a scan, DMA may overwrite the packet that ended it and waits to be
  * added to the next one, which then has a gap. Half a lap counts as overwritten. */
-static void note_overwriting(void)
-{
-    tmini_counters_t counters;
-    tmini_counters(&bed.lidar, &counters);
-    now.may_have_overwritten |=
-        bed.config.rx_dma && counters.bytes_pending + PACKETS_SIZE > bed.config.rx_size / 2;
-}
-
-/* The program works on some scans. */
 static void handle_scan(void)
 {
+    tmini_counters_t counters;
     const size_t free = held.size - held.count;
     const uint32_t bridged_us = (uint32_t)free * 9 / 10 * BYTE_US;
     const uint32_t most_us =
         program.is_bridged && bridged_us < program.handler_us ? bridged_us : program.handler_us;
     bed_pass_us(&bed, between(1000, most_us > 1000 ? most_us : 1000));
-    note_overwriting();
+    tmini_counters(&bed.lidar, &counters);
+    now.may_have_overwritten |=
+        bed.config.rx_dma && counters.bytes_pending + PACKETS_SIZE > bed.config.rx_size / 2;
 }
 
 static void see_scan(bed_t *same, sim_reading_t *reading)
@@ -412,12 +394,10 @@ static void see_scan(bed_t *same, sim_reading_t *reading)
     bed_tell(same, "scan of turn %u: %u points, %u packets, %u gaps, %u dropped%s", turn,
              scan->count, scan->packets, scan->gaps, scan->dropped,
              scan->complete ? ", complete" : "");
-    verdicts.scans++;
-    verdicts.points += scan->count;
-    verdicts.complete += scan->complete ? 1 : 0;
-    verdicts.invisible += scan->complete && reading->is_hidden ? 1 : 0;
-    if ((reading->lies & mixed) != 0 && !scan->complete && explain(reading) != MIXED_KINDS) {
-        verdicts.mixed[explain(reading)]++;
+    verdicts.sums[SCANS]++;
+    verdicts.sums[COMPLETE] += scan->complete ? 1 : 0;
+    if ((reading->lies & mixed) != 0 && !scan->complete && explain(reading) != SUMS) {
+        verdicts.sums[explain(reading)]++;
         reading->lies &= ~mixed;
     }
     watch.turns[turn % WATCH_TURNS].is_delivered |= scan->complete && reading->missing == 0;
@@ -427,12 +407,6 @@ static void see_scan(bed_t *same, sim_reading_t *reading)
 }
 
 /* ---- A trial ---- */
-
-static bool lose_in_holes(void *context, const sim_run_t *run, size_t i)
-{
-    (void)context;
-    return holes_take(&holes, run, i);
-}
 
 /* A trial's first and last turns may be incomplete scans: with rare polls and a layer below, the
  * library cannot know how long the line was silent before the first bytes and after the last. At
@@ -455,7 +429,7 @@ static void judge_cost(void)
     for (uint32_t i = 0; i < holes.turns; i++) {
         const watch_turn_t *const turn = &watch.turns[i];
         if (!turn->is_touched && turn->samples <= bed.config.max_points && is_certain(i)) {
-            verdicts.untouched++;
+            verdicts.sums[UNTOUCHED]++;
             if (!turn->is_delivered) {
                 watch_complain(&bed, WRONG_COST);
             }
@@ -468,10 +442,6 @@ static void judge_end(void)
     const watch_end_t end = watch_end(&bed);
     tmini_counters_t counters;
     tmini_counters(&bed.lidar, &counters);
-    verdicts.trials++;
-    verdicts.bytes += bed.known;
-    verdicts.overrun += counters.bytes_overrun;
-    verdicts.gaps += bed.gaps;
     if (may_be_overwritten()) {
         return;
     }
@@ -479,9 +449,9 @@ static void judge_end(void)
     if (bed.events[TMINI_EVENT_LOST] > 0 || bed.config.max_points < POINTS) {
         return;
     }
-    verdicts.intact += end.intact;
-    verdicts.in_one += end.in_one;
-    verdicts.withheld += counters.points_withheld;
+    verdicts.sums[INTACT] += end.intact;
+    verdicts.sums[IN_ONE] += end.in_one;
+    verdicts.sums[WITHHELD] += counters.points_withheld;
     if (end.intact - end.in_one > counters.points_withheld && !now.may_have_overwritten) {
         watch_complain(&bed, WRONG_LOST_PACKET);
     }
@@ -506,12 +476,12 @@ static void begin_trial(const campaign_mode_t *mode, bool is_told)
     draw_program();
     mode->draw();
     held.is_mute = held.is_mute && held.ignores_room; /* tmini_feed() requires this. */
-    holes_begin(&holes, mode->interrupts_line ? between(1, MOST_HOLES) : 0, turns,
-                100000000u / lidar.frequency_chz, &dice);
+    holes_begin(mode->losses == LINE ? between(1, MOST_HOLES) : 0, turns,
+                100000000u / lidar.frequency_chz);
     watch.line = sim_link_default_config();
     watch.is_trial = true;
     watch.may_lose = true;
-    watch.loses = lose_in_holes;
+    watch.loses = holes_take;
     watch.on_scan = see_scan;
     if (!bed_init(&bed, &lidar)) {
         abort();
@@ -539,12 +509,12 @@ static void start(void)
     bed.poll_ms = 1;
     program.access_ns = 0;
     (void)bed_start(&bed);
-    while (bed.heard.starts == 0 && bed_ms(&bed) < 10000) {
+    while (bed.heard.starts == 0) {
+        if (bed_ms(&bed) >= 10000) {
+            (void)fprintf(stderr, "campaign: the driver does not start the lidar\n");
+            exit(1);
+        }
         bed_step(&bed);
-    }
-    if (bed.heard.starts == 0) {
-        (void)fprintf(stderr, "campaign: the driver does not start the lidar\n");
-        exit(1);
     }
     bed.poll_ms = poll_ms;
     program.access_ns = access_ns;
@@ -581,7 +551,6 @@ static void run_trial(const campaign_mode_t *mode, uint64_t seed, uint64_t trial
         }
         verdicts.wrongs[wrong] += watch.counts.wrongs[wrong];
     }
-    verdicts.by_chance += watch.counts.by_chance;
 }
 
 /* ---- Reports ---- */
@@ -591,7 +560,7 @@ static uint64_t wrongs_of(const campaign_mode_t *mode)
     uint64_t wrongs = 0;
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
         /* With all at once, half a packet may be held for longer than frame_timeout_ms. */
-        const bool is_unjudged = (wrong == WRONG_COST && !mode->costs_nothing) ||
+        const bool is_unjudged = (wrong == WRONG_COST && mode->losses != WHOLE) ||
                                  (wrong == WRONG_LOST_PACKET && mode->draw == draw_everything);
         wrongs += is_unjudged ? 0 : verdicts.wrongs[wrong];
     }
@@ -600,30 +569,9 @@ static uint64_t wrongs_of(const campaign_mode_t *mode)
 
 static void report(const campaign_mode_t *mode)
 {
-    const struct {
-        uint64_t number;
-        const char *what;
-    } sums[] = {
-        {verdicts.trials, "trials"},
-        {verdicts.scans, "scans"},
-        {verdicts.complete, "of them complete"},
-        {verdicts.points, "points"},
-        {verdicts.bytes, "bytes"},
-        {verdicts.overrun, "of them overrun"},
-        {verdicts.gaps, "losses reported"},
-        {verdicts.untouched, "turns came whole for certain"},
-        {verdicts.invisible, "holes of less than 4 degrees left no trace"},
-        {verdicts.by_chance, "lies after damage that left a checksum right"},
-        {verdicts.intact, "intact points"},
-        {verdicts.in_one, "of them in exactly one scan"},
-        {verdicts.withheld, "points withheld"},
-        {verdicts.mixed[MIXED_UNTIMED], "incomplete of two turns: pauses are not judged"},
-        {verdicts.mixed[MIXED_UNSEEN], "incomplete of two turns: a poll or hand-over came late"},
-        {verdicts.mixed[MIXED_DRIBBLE], "incomplete of two turns: silences too short to count"},
-    };
     printf("%s: %s\n", mode->name, mode->what);
-    for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++) {
-        printf("  %12llu %s\n", (unsigned long long)sums[i].number, sums[i].what);
+    for (unsigned sum = 0; sum < SUMS; sum++) {
+        printf("  %12llu %s\n", (unsigned long long)verdicts.sums[sum], sum_names[sum]);
     }
     for (unsigned wrong = 0; wrong < WRONG_KINDS; wrong++) {
         printf("  %12llu %s", (unsigned long long)verdicts.wrongs[wrong], watch_name(wrong));
@@ -641,7 +589,8 @@ static bool run_mode(const campaign_mode_t *mode, uint64_t scans, uint64_t seed,
     if (only != NULL) {
         run_trial(mode, seed, strtoull(only, NULL, 10), true);
     } else {
-        for (uint64_t trial = 0; verdicts.scans < scans && wrongs_of(mode) < MOST_WRONGS; trial++) {
+        for (uint64_t trial = 0; verdicts.sums[SCANS] < scans && wrongs_of(mode) < MOST_WRONGS;
+             trial++) {
             run_trial(mode, seed, trial, false);
         }
     }

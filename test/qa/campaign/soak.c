@@ -8,9 +8,8 @@
  * uses the library. Prints what happened. Exit status: 0 if the library did nothing wrong
  * (watch.h lists the checks), 1 if it did, 2 wrong usage. The same seed gives the same run. */
 
-#include "soak.h"
-
 #include "bed.h"
+#include "campaign.h"
 
 #include <stdio.h>
 #include <stdlib.h>
