@@ -22,8 +22,6 @@
 #define STAY_MS 5000u
 #define REST_MS 1500u
 
-static const uint8_t scans_to_free[NS] = {1, 3, 5};
-
 /* A box for each pillar, and in it a field for each K and N. */
 typedef struct {
     tmini_xy_t box[2];
@@ -46,33 +44,18 @@ typedef struct {
 /* One for each place, K and N, in this order. */
 #define ALL (2 * KS * NS)
 
-static rover_t rover;
+static const rover_hall_t empty = {0};
 static tmini_field_t fields[ALL];
 static tmini_field_state_t before[ALL];
 static result_t results[ALL];
-
-static void set_up(const rover_config_t *config)
-{
-    static const tmini_fields_t all = {.list = fields, .count = ALL};
-    for (unsigned i = 0; i < ALL; i++) {
-        fields[i] = (tmini_field_t){.corners = places[i / (KS * NS)].box,
-                                    .corner_count = 2,
-                                    .points = (uint8_t)(1 + i / NS % KS),
-                                    .scans = scans_to_free[i % NS],
-                                    .max_age_ms = 600};
-        before[i] = TMINI_FIELD_BLIND;
-        results[i] = (result_t){0};
-    }
-    rover_init(&rover, config, &all);
-}
 
 typedef enum { NOTHING, ALARMS, FREED } counted_t;
 
 static void pass(uint32_t ms, counted_t counted)
 {
     while (ms-- > 0) {
-        for (unsigned i = rover_pass(&rover) ? 0 : ALL; i < ALL; i++) {
-            const tmini_field_state_t now = tmini_field_state(&fields[i], rover_now_ms(&rover));
+        for (unsigned i = rover_pass() ? 0 : ALL; i < ALL; i++) {
+            const tmini_field_state_t now = tmini_field_state(&fields[i], rover_now_ms());
             results[i].alarms +=
                 counted == ALARMS && now != before[i] && before[i] == TMINI_FIELD_FREE;
             results[i].freed += counted == FREED && now != before[i] && now == TMINI_FIELD_FREE;
@@ -88,21 +71,20 @@ static void show_pillar(unsigned place)
     const rover_hall_t hall = {.pillar_mm = at->mm,
                                .pillar_wide_mm = at->wide_mm,
                                .pillar_deg =
-                                   ((double)random_below(&rover.random, 2 * most) - most) / 100.0};
-    static const rover_hall_t empty = {0};
-    rover_furnish(&rover, &hall);
+                                   ((double)random_below(&rover_random, 2 * most) - most) / 100.0};
+    rover_furnish(&hall);
     pass(FOUND_MS, NOTHING);
     for (unsigned i = place * KS * NS; i < (place + 1) * KS * NS; i++) {
         results[i].found += before[i] == TMINI_FIELD_OCCUPIED;
     }
     pass(STAY_MS - FOUND_MS, FREED);
-    rover_furnish(&rover, &empty);
-    pass(REST_MS + random_below(&rover.random, 200), NOTHING);
+    rover_furnish(&empty);
+    pass(REST_MS + random_below(&rover_random, 200), NOTHING);
 }
 
-static void print_by_n(const char *before_it, const double values[NS])
+static void print_by_n(uint32_t one, uint32_t three, uint32_t five, double hours)
 {
-    (void)printf("%s%.0f / %.0f / %.0f", before_it, values[0], values[1], values[2]);
+    (void)printf(" | %.0f / %.0f / %.0f", one / hours, three / hours, five / hours);
 }
 
 /* The rows of one frequency, from `quiet`, without random points, and from `noisy`. */
@@ -111,29 +93,32 @@ static void print_places(unsigned hertz, const result_t *quiet, const result_t *
 {
     static const double shown_hours = (double)TRIALS * (STAY_MS - FOUND_MS) / 3600000.0;
     for (unsigned i = 0; i < 2 * KS; i++) {
-        const result_t *const by_n = &quiet[i * NS];
-        const result_t *const noisy_by_n = &noisy[i * NS];
-        double freed[NS];
-        double alarms[NS];
-        for (unsigned n = 0; n < NS; n++) {
-            freed[n] = by_n[n].freed / shown_hours;
-            alarms[n] = (double)noisy_by_n[n].alarms / hours;
-        }
+        const result_t *const without = &quiet[i * NS];
+        const result_t *const with = &noisy[i * NS];
         (void)printf("| %g mm at %g m | %u Hz | %u | %.0f %% | %.0f %%", places[i / KS].wide_mm,
-                     places[i / KS].mm / 1000, hertz, 1 + i % KS, 100.0 * by_n[0].found / TRIALS,
-                     100.0 * noisy_by_n[0].found / TRIALS);
-        print_by_n(" | ", freed);
-        (void)printf(" | %.0f", (double)by_n[0].alarms / hours);
-        print_by_n(" | ", alarms);
+                     places[i / KS].mm / 1000, hertz, 1 + i % KS, 100.0 * without->found / TRIALS,
+                     100.0 * with->found / TRIALS);
+        print_by_n(without[0].freed, without[1].freed, without[2].freed, shown_hours);
+        (void)printf(" | %.0f", (double)without->alarms / hours);
+        print_by_n(with[0].alarms, with[1].alarms, with[2].alarms, hours);
         (void)puts(" |");
     }
 }
 
 static void measure(const rover_config_t *config, unsigned hours)
 {
-    static const rover_hall_t empty = {0};
-    set_up(config);
-    rover_furnish(&rover, &empty);
+    static const tmini_fields_t all = {.list = fields, .count = ALL};
+    for (unsigned i = 0; i < ALL; i++) {
+        fields[i] = (tmini_field_t){.corners = places[i / (KS * NS)].box,
+                                    .corner_count = 2,
+                                    .points = (uint8_t)(1 + i / NS % KS),
+                                    .scans = (uint8_t)(1 + i % NS * 2), /* 1, 3, 5. */
+                                    .max_age_ms = 600};
+        before[i] = TMINI_FIELD_BLIND;
+        results[i] = (result_t){0};
+    }
+    rover_init(config, &all);
+    rover_furnish(&empty);
     pass(10000, NOTHING);
     pass(hours * 3600000u, ALARMS);
     for (unsigned i = 0; i < 2 * TRIALS; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* A robot on the bed (test/system/bed.h), with fields, in a hall of 8 m by 8 m. Some points may be
+/* One robot on the bed (test/system/bed.h), with fields, in a hall of 8 m by 8 m. Some points may be
  * random, as in dust or beside other lidars. */
 
 #ifndef ROVER_H
@@ -26,24 +26,17 @@ typedef struct {
     double pillar_deg; /* Clockwise from ahead. */
 } rover_hall_t;
 
-typedef struct {
-    rover_config_t config;
-    bed_t bed;
-    random_t random;
-    tmini_one_step_t list[2];
-    tmini_steps_t steps;
-    const tmini_fields_t *fields;
-} rover_t;
+extern random_t rover_random;
 
-/* Sets up fields and driver, and starts the lidar. It stays the caller's. */
-void rover_init(rover_t *rover, const rover_config_t *config, const tmini_fields_t *fields);
+/* Sets up fields and driver, and starts the lidar. All of it stays the caller's. */
+void rover_init(const rover_config_t *config, const tmini_fields_t *fields);
 
-void rover_furnish(rover_t *rover, const rover_hall_t *hall);
+void rover_furnish(const rover_hall_t *hall);
 
 /* A millisecond passes. Returns true if a scan has come. */
-bool rover_pass(rover_t *rover);
+bool rover_pass(void);
 
 /* By the driver's clock. */
-uint32_t rover_now_ms(rover_t *rover);
+uint32_t rover_now_ms(void);
 
 #endif

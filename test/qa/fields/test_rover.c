@@ -15,8 +15,6 @@
 #define BRAKE_MM_MS2 0.002 /* 2 m/s². */
 #define LOOP_MS 20u        /* How often the program looks. */
 
-static rover_t rover;
-
 typedef struct {
     double gap_mm;  /* From the lidar to the wall in the end; it touches at 0. */
     double fastest; /* In mm per ms. */
@@ -42,15 +40,15 @@ static drive_t drive(const rover_config_t *config, unsigned points, unsigned sca
     drive_t result = {.gap_mm = BEGIN_MM};
     double speed = 0;
     bool may_drive = false;
-    rover_init(&rover, config, &fields);
+    rover_init(config, &fields);
     for (unsigned ms = 0; ms < 9000 && result.gap_mm > 0; ms++) {
         const rover_hall_t hall = {.wall_mm = result.gap_mm};
         if (ms % 10 == 0 && (ms == 0 || speed > 0)) {
-            rover_furnish(&rover, &hall);
+            rover_furnish(&hall);
         }
-        (void)rover_pass(&rover);
+        (void)rover_pass();
         if (ms % LOOP_MS == 0) {
-            may_drive = tmini_field_state(&field, rover_now_ms(&rover)) == TMINI_FIELD_FREE;
+            may_drive = tmini_field_state(&field, rover_now_ms()) == TMINI_FIELD_FREE;
         }
         speed += may_drive ? BRAKE_MM_MS2 : -BRAKE_MM_MS2;
         speed = speed < 0 ? 0 : speed > SPEED_MM_MS ? SPEED_MM_MS : speed;
