@@ -139,6 +139,9 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_last_question_without_an_answer_is_repeated_but_not_for_ever,
         "idle set:700 >0D <600 +50 >0B <700 +50 4( >0D +2000 >0D <700 +50 ) >0D +2000 !FAILED "
         "?TIMEOUT #0"),
+    ROW(a_lidar_that_answers_and_scans_on_is_not_stopped_for_ever,
+        "idle set:700 >0D <600 +50 >0B <700 +50 >0D 15( <P >65 +50 >0D <700 +50 >0D ) <P !NONE "
+        "+2000 >0D"),
     ROW(a_late_first_answer_leaves_all_questions_for_what_follows,
         "idle set:700 29( >0D +250 ) >0D <600 +50 >0B <P >65 +50 28( >0D +250 ) >0D <600 +50 >0B"),
     ROW(a_packet_while_the_frequency_is_set_means_that_the_stop_was_lost,
