@@ -8,6 +8,7 @@
 #define _XOPEN_SOURCE 700
 #define _DEFAULT_SOURCE /* B230400 */
 
+#include "rows.h"
 #include "simulator.h"
 #include "tmini/tmini_blocking.h"
 #include "tmini_posix.h"
@@ -37,6 +38,8 @@ static tmini_t lidar;
 static uint8_t rx[1024];
 static tmini_point_t points[TMINI_SCAN_POINTS_TYPICAL + 200];
 static size_t tapped;
+static int first_fd;      /* The port's, when it was begun. */
+static uint64_t begun_us; /* When the last call began. */
 
 static uint64_t now_us;
 static int poll_error;    /* poll() fails with it, */
@@ -45,6 +48,7 @@ static int poll_fails_ms; /* after so many milliseconds. */
 static sim_t unit;      /* The simulated lidar, */
 static int its_end;     /* its end of the line (-1: it is unplugged), */
 static int listener;    /* where it can be reached by a socket (-1: it cannot), */
+static int other_end;   /* of a pair of sockets with the port (-1: there is none), */
 static char device[64]; /* and the port's name of it. */
 
 /* ---- The lidar, and the time ---- */
@@ -90,10 +94,16 @@ static void plug_in(void)
     (void)snprintf(device, sizeof device, "%s", ptsname(its_end));
 }
 
-static void pull_the_cable(void)
+static void hang_up(void)
 {
     close_end(&its_end);
     close_end(&listener);
+    close_end(&other_end);
+}
+
+static void pull_the_cable(void)
+{
+    hang_up();
     (void)snprintf(device, sizeof device, "/dev/nowhere");
 }
 
@@ -175,28 +185,6 @@ int clock_gettime(clockid_t clock, struct timespec *now)
 
 /* ---- The rig ---- */
 
-void setUp(void)
-{
-    tapped = 0;
-    poll_error = 0;
-    now_us = UINT64_C(0xFFFFFE00) * 1000; /* In half a second 32 bits of milliseconds wrap. */
-    its_end = listener = -1;
-    pull_the_cable();
-    tmini_posix_init(&port, device);
-}
-
-void tearDown(void)
-{
-    tmini_posix_stop(&port);
-    pull_the_cable();
-}
-
-static tmini_posix_status_t start(tmini_posix_t *other, const char *path)
-{
-    tmini_posix_init(other, path);
-    return tmini_posix_start(other, NULL);
-}
-
 static void init_lidar(bool listen_only)
 {
     const tmini_config_t config = {.port = &tmini_posix_port,
@@ -209,29 +197,48 @@ static void init_lidar(bool listen_only)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_init(&lidar, &config));
 }
 
+void setUp(void)
+{
+    tapped = 0;
+    poll_error = 0;
+    now_us = UINT64_C(0xFFFFFE00) * 1000; /* In half a second 32 bits of milliseconds wrap. */
+    its_end = listener = other_end = -1;
+    pull_the_cable();
+    tmini_posix_init(&port, device);
+    init_lidar(false);
+}
+
+void tearDown(void)
+{
+    tmini_posix_stop(&port);
+    hang_up();
+}
+
+static tmini_posix_status_t start(tmini_posix_t *other, const char *path)
+{
+    tmini_posix_init(other, path);
+    return tmini_posix_start(other, NULL);
+}
+
 static void begin(void)
 {
     plug_in();
-    init_lidar(false);
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
+    first_fd = port.fd;
 }
 
 static void begin_by_socket(void)
 {
+    int sends_at_once = 0;
+    socklen_t size = sizeof sends_at_once;
     begin();
     pull_the_cable();
     make_listener(1);
     const uint64_t begun_us = now_us;
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
     TEST_ASSERT_EQUAL_UINT64(600, (now_us - begun_us) / 1000); /* A timed stream would begin. */
-}
-
-/* Without a lidar, but it may be plugged in at any time. */
-static void begin_to_wait(void)
-{
-    init_lidar(false);
-    tmini_posix_reconnect(&port, true);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_start(&port, &lidar));
+    TEST_ASSERT_EQUAL_INT(0, getsockopt(port.fd, IPPROTO_TCP, TCP_NODELAY, &sends_at_once, &size));
+    TEST_ASSERT_NOT_EQUAL_INT(0, sends_at_once);
 }
 
 static tmini_status_t read_info(void)
@@ -256,24 +263,15 @@ static void poll_until(tmini_event_t wanted)
     } while (event != wanted);
 }
 
-/* Waits until it has received this many bytes in all, which takes no time. */
-static void receive(uint64_t total)
-{
-    const uint64_t begun_us = now_us;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
-    TEST_ASSERT_EQUAL_UINT64(total, port.received);
-    TEST_ASSERT_TRUE(now_us - begun_us < 1000);
-}
-
-/* Starts the port on one end of a pair of sockets, with these bytes sent to it. Returns the other
- * end. */
-static int start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
+/* Starts the port on one end of a pair of sockets, with these bytes sent to it. */
+static void start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count)
 {
     int ends[2];
     TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, ends));
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start_on(&port, ends[0], for_lidar));
     TEST_ASSERT_EQUAL_INT(count, write(ends[1], bytes, count));
-    return ends[1];
+    close_end(&other_end);
+    other_end = ends[1];
 }
 
 /* ---- Opening ---- */
@@ -359,37 +357,6 @@ void test_connecting_ends_after_5_s_and_not_by_a_signal(void)
     TEST_ASSERT_EQUAL_UINT64(5000, (now_us - begun_us) / 1000);
 }
 
-void test_a_lidar_can_be_reached_through_a_socket(void)
-{
-    int sends_at_once = 0;
-    socklen_t size = sizeof sends_at_once;
-    begin_by_socket();
-    TEST_ASSERT_EQUAL_INT(0, getsockopt(port.fd, IPPROTO_TCP, TCP_NODELAY, &sends_at_once, &size));
-    TEST_ASSERT_NOT_EQUAL_INT(0, sends_at_once);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-    close_end(&its_end);
-    close_end(&listener);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 1000));
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, read_info());
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_start(&port, &lidar));
-}
-
-void test_bytes_from_before_the_start_are_thrown_away(void)
-{
-    const int master = open_terminal();
-    const int line = open(ptsname(master), O_RDWR | O_NOCTTY); /* Otherwise stopping would do it. */
-    struct pollfd arrival = {.fd = line, .events = POLLIN};
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, start(&port, ptsname(master))); /* Makes it raw. */
-    TEST_ASSERT_EQUAL_INT(3, write(master, "old", 3));
-    TEST_ASSERT_EQUAL_INT(1, poll(&arrival, 1, 1000));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, NULL));
-    TEST_ASSERT_EQUAL_INT(4, write(master, "news", 4));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1000));
-    TEST_ASSERT_EQUAL_UINT64(4, port.received);
-    close(line);
-    close(master);
-}
-
 /* The system allows root to open a claimed device, but the port refuses it to root, too, and leaves
  * the claim. */
 void test_a_device_is_used_by_one_program_at_a_time(void)
@@ -428,18 +395,6 @@ void test_the_programs_own_terminal_is_refused(void)
     close(master);
 }
 
-/* Otherwise a child of system() would keep the device claimed after the port has stopped. */
-void test_children_inherit_neither_device_nor_socket(void)
-{
-    begin();
-    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(port.fd, F_GETFD));
-    const int other = start_on_pair(&lidar, NULL, 0);
-    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(port.fd, F_GETFD));
-    close(other);
-    begin_by_socket();
-    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(port.fd, F_GETFD));
-}
-
 void test_a_terminal_for_typing_becomes_a_line_for_bytes(void)
 {
     /* Another program has set it so that read() returns 0 after 0.1 s without a byte. */
@@ -463,100 +418,8 @@ void test_a_terminal_for_typing_becomes_a_line_for_bytes(void)
     close(master);
 }
 
-/* A device that is started twice is open once: its first descriptor is free again. */
-void test_only_between_start_and_stop_something_is_received_or_sent(void)
-{
-    static const uint8_t stop[2] = {0xA5, 0x65};
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));
-    TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, stop, sizeof stop));
-    begin();
-    const int first = port.fd;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_INT(first, port.fd);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-    tmini_posix_stop(&port);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_start(&port, &lidar));
-    TEST_ASSERT_EQUAL_UINT64(0, port.received);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-}
-
-/* ---- Receiving ---- */
-
-static void tap(void *context, const uint8_t *bytes, size_t count)
-{
-    TEST_ASSERT_EQUAL_PTR(&tapped, context);
-    TEST_ASSERT_NOT_NULL(bytes);
-    tapped += count;
-}
-
-void test_a_tap_gets_every_byte(void)
-{
-    begin();
-    tmini_posix_tap(&port, tap, &tapped);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-    TEST_ASSERT_EQUAL_size_t(27, tapped); /* The reply: 7 + 20 bytes. */
-    TEST_ASSERT_EQUAL_UINT64(27, port.received);
-    tmini_posix_tap(&port, NULL, NULL);
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, read_info());
-    TEST_ASSERT_EQUAL_size_t(27, tapped);
-}
-
-void test_a_line_without_counters_has_no_errors(void)
-{
-    tmini_posix_counters_t counters = {1, 1, 1};
-    begin();
-    tmini_posix_counters(&port, &counters);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.overruns + counters.framing_errors);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.parity_errors);
-}
-
-/* With a lidar as many as it has room for, without one in blocks. */
-void test_bytes_that_have_waited_are_handed_over_at_once(void)
-{
-    static const uint8_t bytes[700];
-    init_lidar(false);
-    close(start_on_pair(NULL, bytes, 300));
-    receive(128);
-    receive(256);
-    receive(300);
-    close(start_on_pair(&lidar, bytes, sizeof bytes));
-    receive(sizeof bytes);
-}
-
-void test_bytes_without_room_stay_with_the_system_and_are_not_waited_for(void)
-{
-    static const uint8_t bytes[2000];
-    tmini_counters_t counters;
-    init_lidar(false);
-    const int other = start_on_pair(&lidar, bytes, sizeof bytes);
-    receive(sizeof rx);
-    receive(sizeof rx);
-    for (unsigned i = 0; i < 20; i++) {
-        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1));
-        while (tmini_poll(&lidar) != TMINI_EVENT_NONE) {
-        }
-    }
-    TEST_ASSERT_EQUAL_UINT64(sizeof bytes, port.received);
-    tmini_counters(&lidar, &counters);
-    TEST_ASSERT_EQUAL_UINT32(0, counters.bytes_overrun);
-    close(other);
-}
-
-/* The receive buffer holds a third of the bytes of 250 ms, the system the rest. */
-void test_a_pause_of_the_program_costs_no_scan(void)
-{
-    begin();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
-    for (int i = 0; i < 9; i++) {
-        poll_until(TMINI_EVENT_SCAN);
-        TEST_ASSERT_TRUE(tmini_scan(&lidar)->complete);
-        (void)poll(NULL, 0, i == 3 || i == 6 ? 250 : 0);
-    }
-}
-
 /* What the lidar sends in a third of a second, in chunks of 10 ms; all of it comes at the end. */
-static void send_late(int other)
+static void send_late(void)
 {
     static uint8_t stream[10000];
     size_t size = 0;
@@ -568,7 +431,7 @@ static void send_late(int other)
         tmini_timed_write_head(head, 10000, bytes, count);
         size += TMINI_TIMED_HEAD_SIZE + count;
     }
-    TEST_ASSERT_EQUAL_INT(size, write(other, stream, size));
+    TEST_ASSERT_EQUAL_INT(size, write(other_end, stream, size));
 }
 
 /* Handles all that has come. Returns when the last scan ended; before it, scans are complete and
@@ -597,97 +460,17 @@ void test_a_timed_stream_that_comes_late_has_the_times_of_its_sender(void)
     sim_receive(&unit, command, sizeof command, now_us);
     init_lidar(true);
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
-    const int other = start_on_pair(&lidar, tmini_timed_magic, sizeof tmini_timed_magic);
+    start_on_pair(&lidar, tmini_timed_magic, sizeof tmini_timed_magic);
     for (unsigned i = 0; i < 15; i++) {
-        send_late(other);
+        send_late();
         end_ms = take_scans(end_ms, i > 5);
         TEST_ASSERT_INT64_WITHIN(5000, (int64_t)now_us, tmini_posix_now_us(&port));
     }
     TEST_ASSERT_UINT32_WITHIN(90, 90, tmini_posix_port.now_ms(&port) - end_ms);
     TEST_ASSERT_TRUE(tmini_posix_is_timed(&port));
     TEST_ASSERT_EQUAL_INT(-1, tmini_posix_port.write(&port, command, sizeof command));
-    close(other);
+    hang_up();
     TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 0));
-}
-
-void test_a_failure_to_wait_for_bytes_is_an_error_but_silence_and_a_signal_are_not(void)
-{
-    begin();
-    const uint64_t begun_us = now_us;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 20));
-    TEST_ASSERT_UINT64_WITHIN(1000, 20000, now_us - begun_us);
-    TEST_ASSERT_EQUAL_UINT64(0, port.received);
-    poll_fails_ms = 7;
-    poll_error = EINTR;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 100));
-    poll_error = ENOMEM;
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_wait(&port, 100));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_FAILED, tmini_posix_wait(&port, 0));
-}
-
-/* ---- Unplugged, plugged in again ---- */
-
-void test_an_unplugged_device_stays_unplugged_for_reading_and_writing(void)
-{
-    for (int writes = 0; writes < 2; writes++) {
-        begin();
-        pull_the_cable();
-        if (writes == 0) {
-            TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 1000));
-        }
-        TEST_ASSERT_EQUAL_INT(TMINI_ERROR_WRITE, read_info());
-        TEST_ASSERT_EQUAL_INT(TMINI_POSIX_UNPLUGGED, tmini_posix_wait(&port, 0));
-    }
-}
-
-/* The port tries a missing device only five times per second. */
-void test_a_device_that_is_not_there_yet_is_waited_for(void)
-{
-    begin_to_wait();
-    plug_in();
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 0));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 199));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, port.state);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 1));
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
-}
-
-void test_a_device_that_was_stopped_is_not_waited_for(void)
-{
-    begin_to_wait();
-    plug_in();
-    tmini_posix_stop(&port);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, tmini_posix_wait(&port, 1000));
-}
-
-void test_a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery(void)
-{
-    begin_to_wait();
-    plug_in();
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
-    poll_until(TMINI_EVENT_SCAN);
-    pull_the_cable();
-    poll_until(TMINI_EVENT_LOST);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_NO_DEVICE, port.state);
-    plug_in();
-    poll_until(TMINI_EVENT_RECOVERED);
-    poll_until(TMINI_EVENT_SCAN);
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, port.state);
-    TEST_ASSERT_TRUE(port.reconnections >= 2);
-}
-
-/* Until the gap has been handled there is no room: no scan continues across it. */
-void test_a_reconnection_is_a_gap(void)
-{
-    begin_to_wait();
-    plug_in();
-    TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
-    (void)poll(NULL, 0, 300); /* Then the next attempt is due at once. */
-    TEST_ASSERT_EQUAL_INT(TMINI_POSIX_OK, tmini_posix_wait(&port, 0));
-    TEST_ASSERT_EQUAL_UINT32(1, port.reconnections);
-    TEST_ASSERT_EQUAL_size_t(0, tmini_feed_room(&lidar));
-    (void)tmini_poll(&lidar);
-    TEST_ASSERT_TRUE(tmini_feed_room(&lidar) > 0);
 }
 
 void test_every_status_has_a_name(void)
@@ -697,4 +480,173 @@ void test_every_status_has_a_name(void)
         TEST_ASSERT_TRUE(strlen(name) > 0 && strcmp(name, "unknown status") != 0);
     }
     TEST_ASSERT_EQUAL_STRING("unknown status", tmini_posix_status_name((tmini_posix_status_t)1));
+}
+
+/* ---- Told in words ---- */
+
+static void tap(void *context, const uint8_t *bytes, size_t count)
+{
+    TEST_ASSERT_EQUAL_PTR(&tapped, context);
+    TEST_ASSERT_NOT_NULL(bytes);
+    tapped += count;
+}
+
+static const struct {
+    const char *name;
+    int value;
+} values[] = {{"nodevice", TMINI_POSIX_NO_DEVICE},
+              {"unplugged", TMINI_POSIX_UNPLUGGED},
+              {"failed", TMINI_POSIX_FAILED},
+              {"unwritten", TMINI_ERROR_WRITE},
+              {"refused", -1},
+              {"scan", TMINI_EVENT_SCAN},
+              {"lost", TMINI_EVENT_LOST},
+              {"recovered", TMINI_EVENT_RECOVERED},
+              {"signal", EINTR},
+              {"memory", ENOMEM}};
+
+static int value_of(const char *name)
+{
+    size_t i = 0;
+    while (strcmp(values[i].name, name) != 0) {
+        TEST_ASSERT_TRUE_MESSAGE(++i < sizeof values / sizeof values[0], name);
+    }
+    return values[i].value;
+}
+
+/* Whether the word is a number that is known, and expected. */
+static bool is_fact(const char *word)
+{
+    tmini_counters_t counters;
+    tmini_posix_counters_t line = {1, 1, 1};
+    tmini_counters(&lidar, &counters);
+    tmini_posix_counters(&port, &line);
+    const tmini_scan_t *const scan = tmini_scan(&lidar);
+    const row_number_t facts[] = {
+        {"received", (uint32_t)port.received},
+        {"tapped", (uint32_t)tapped},
+        {"reconnections", port.reconnections},
+        {"room", (uint32_t)tmini_feed_room(&lidar)},
+        {"overrun", counters.bytes_overrun},
+        {"errors", line.overruns + line.framing_errors + line.parity_errors},
+        {"complete", scan != NULL && scan->complete},
+        {"inherited", fcntl(port.fd, F_GETFD) != FD_CLOEXEC},
+        {"moved", port.fd != first_fd},
+        {"ms", (uint32_t)((now_us - begun_us) / 1000)},
+    };
+    return row_expects(word, facts);
+}
+
+/* A call's status is OK, or what follows its "=". */
+static void tell(char *word)
+{
+    static const uint8_t bytes[2000];
+    const uint32_t number = row_number(word);
+    char *const equals = strchr(word, '=');
+    const int wanted = equals != NULL ? value_of(equals + 1) : 0;
+    int status = wanted;
+    word[strcspn(word, "=")] = '\0';
+    if (is_fact(word)) {
+        return;
+    }
+    begun_us = now_us;
+    if (row_is(word, "begin")) {
+        begin();
+    } else if (row_is(word, "socket")) {
+        begin_by_socket();
+    } else if (row_is(word, "await")) {
+        tmini_posix_reconnect(&port, true);
+        status = tmini_posix_start(&port, &lidar);
+    } else if (row_is(word, "plug")) {
+        plug_in();
+    } else if (row_is(word, "pull")) {
+        pull_the_cable();
+    } else if (row_is(word, "hangup")) {
+        hang_up();
+    } else if (row_is(word, "wait")) {
+        status = tmini_posix_wait(&port, (int)number);
+    } else if (row_is(word, "start")) {
+        status = tmini_posix_start(&port, &lidar);
+    } else if (row_is(word, "stop")) {
+        tmini_posix_stop(&port);
+    } else if (row_is(word, "state")) {
+        status = port.state;
+    } else if (row_is(word, "write")) {
+        status = tmini_posix_port.write(&port, bytes, 2);
+    } else if (row_is(word, "tap")) {
+        tmini_posix_tap(&port, number != 0 ? tap : NULL, &tapped);
+    } else if (row_is(word, "info")) {
+        status = (int)read_info();
+    } else if (row_is(word, "scan")) {
+        status = (int)tmini_start(&lidar);
+    } else if (row_is(word, "poll")) {
+        (void)tmini_poll(&lidar);
+    } else if (row_is(word, "until")) {
+        poll_until((tmini_event_t)value_of(row_text(word)));
+    } else if (row_is(word, "pair") || row_is(word, "blocks")) {
+        start_on_pair(row_is(word, "pair") ? &lidar : NULL, bytes, number);
+    } else if (row_is(word, "hold")) {
+        other_end = open(device, O_RDWR | O_NOCTTY);
+    } else if (row_is(word, "send")) {
+        send_to_port(bytes, number);
+    } else if (row_is(word, "pause")) {
+        (void)poll(NULL, 0, (int)number);
+    } else {
+        TEST_ASSERT_TRUE_MESSAGE(row_is(word, "error"), word);
+        poll_error = value_of(row_text(word));
+        poll_fails_ms = 7;
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(wanted, status, word);
+}
+
+static const row_t rows[] = {
+    /* Held open, because otherwise stopping would do it. */
+    ROW(bytes_from_before_the_start_are_thrown_away,
+        "begin hold send:3 start send:4 wait:1000 received:4"),
+    ROW(a_lidar_can_be_reached_through_a_socket,
+        "socket info hangup wait:1000=unplugged info=unwritten start=failed"),
+    /* Otherwise a child of system() would keep the device claimed after the port has stopped. */
+    ROW(children_inherit_neither_device_nor_socket,
+        "begin inherited:0 pair:0 inherited:0 hangup socket inherited:0"),
+    /* A device that is started twice is open once: its first descriptor is free again. */
+    ROW(only_between_start_and_stop_something_is_received_or_sent,
+        "wait:0=nodevice write=refused begin start moved:0 info stop wait:0=nodevice "
+        "start received:0 info"),
+    /* The reply: 7 + 20 bytes. */
+    ROW(a_tap_gets_every_byte, "begin tap:1 info tapped:27 received:27 tap:0 info tapped:27"),
+    ROW(a_line_without_counters_has_no_errors, "begin errors:0"),
+    /* With a lidar as many as it has room for, without one in blocks. */
+    ROW(bytes_that_have_waited_are_handed_over_at_once,
+        "blocks:300 hangup wait:1000 received:128 wait:1000 received:256 wait:1000 received:300 "
+        "ms:0 pair:700 hangup wait:1000 received:700 ms:0"),
+    ROW(bytes_without_room_stay_with_the_system_and_are_not_waited_for,
+        "pair:2000 2( wait:1000 received:1024 ms:0 ) 20( wait:1 9( poll ) ) received:2000 "
+        "overrun:0"),
+    /* The receive buffer holds a third of the bytes of 250 ms, the system the rest. */
+    ROW(a_pause_of_the_program_costs_no_scan,
+        "begin scan until:scan complete:1 2( 3( until:scan complete:1 ) pause:250 ) "
+        "2( until:scan complete:1 )"),
+    ROW(a_failure_to_wait_for_bytes_is_an_error_but_silence_and_a_signal_are_not,
+        "begin wait:20 ms:20 received:0 error:signal wait:100 error:memory wait:100=failed "
+        "wait:0=failed"),
+    ROW(an_unplugged_device_stays_unplugged_for_reading,
+        "begin pull wait:1000=unplugged info=unwritten wait:0=unplugged"),
+    ROW(an_unplugged_device_stays_unplugged_for_writing,
+        "begin pull info=unwritten wait:0=unplugged"),
+    /* The port tries a missing device only five times per second. */
+    ROW(a_device_that_is_not_there_yet_is_waited_for,
+        "await=nodevice plug wait:0 wait:199 state=nodevice wait:1 state"),
+    ROW(a_device_that_was_stopped_is_not_waited_for, "await=nodevice plug stop wait:1000=nodevice"),
+    ROW(a_cable_that_is_pulled_and_plugged_in_again_is_a_loss_and_a_recovery,
+        "await=nodevice plug scan until:scan pull until:lost state=nodevice plug until:recovered "
+        "until:scan state reconnections>1"),
+    /* Until the gap has been handled there is no room: no scan continues across it. After the pause
+     * the next attempt is due at once. */
+    ROW(a_reconnection_is_a_gap,
+        "await=nodevice plug room>0 pause:300 wait:0 reconnections:1 room:0 poll room>0"),
+};
+
+void test_each_row(void)
+{
+    tell_rows(rows, tell);
 }
