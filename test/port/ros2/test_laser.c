@@ -5,8 +5,10 @@
  * ROS's definition of the messages. */
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "rows.h"
 #include "tmini_cloud.h"
 #include "tmini_laser.h"
 
@@ -147,20 +149,6 @@ void test_every_ray_has_the_direction_and_the_time_of_its_point(void)
     }
 }
 
-/* The last points of a turn may lie beyond its first one, here nearer than those. */
-void test_where_a_turn_overlaps_itself_each_ray_has_its_own_end(void)
-{
-    add_turn(0);
-    for (size_t i = 0; i < 5; i++) {
-        add(0.9f * (float)i, (uint16_t)(500u + i), 0);
-    }
-    convert();
-    TEST_ASSERT_EQUAL_FLOAT(0.5f, ranges[0]);
-    for (size_t i = 1; i < 5; i++) {
-        TEST_ASSERT_EQUAL_FLOAT((float)(1000u + i) / 1000.0f, ranges[RAYS - i]);
-    }
-}
-
 /* The clock may be late at the start of a turn, but not at its end. */
 void test_the_times_of_a_turn_follow_from_its_end_and_its_frequency_or_are_unknown(void)
 {
@@ -204,24 +192,6 @@ void test_the_times_of_a_part_of_a_turn_follow_from_its_first_point(void)
     }
 }
 
-static void assert_begins_at(float degrees)
-{
-    TEST_ASSERT_TRUE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
-    TEST_ASSERT_FLOAT_WITHIN(NEAR, degrees * 0.0174532925f, fields.angle_min);
-}
-
-void test_the_first_ray_is_ahead_until_a_complete_scan_shows_where_it_stays(void)
-{
-    add_turn(116);
-    scan.complete = false;
-    assert_begins_at(0);
-    scan.complete = true;
-    assert_begins_at(-115);
-    scan.count = 0;
-    add_turn(118);
-    assert_begins_at(-115);
-}
-
 void test_without_a_scan_or_rays_nothing_is_written(void)
 {
     TEST_ASSERT_FALSE(tmini_laser_of_scan(&laser, NULL, ranges, intensities, &fields));
@@ -234,63 +204,6 @@ void test_without_a_scan_or_rays_nothing_is_written(void)
 }
 
 /* -------------------------------------------------------------------------------------- ranges */
-
-/* To the right is 90 degrees for the lidar, -90 for ROS: ray 270. */
-void test_a_ray_has_its_nearest_point_and_that_points_intensity(void)
-{
-    add(0, 1, 0);
-    add(90, 4000, 40);
-    add(90.2f, 3000, 30);
-    add(90.4f, 5000, 50);
-    convert();
-    TEST_ASSERT_EQUAL_FLOAT(3.0f, ranges[270]);
-    TEST_ASSERT_EQUAL_FLOAT(30.0f, intensities[270]);
-}
-
-/* One point to the right, where a ray's value depends on its distance and the limits. */
-static const struct {
-    uint16_t distance_mm;
-    bool missing_inf;
-    float expected;
-} values[] = {
-    {0, false, NAN},   {0, true, INFINITY}, {199, false, NAN},  {199, true, NAN},
-    {200, true, 0.2f}, {8000, false, 8.0f}, {8001, false, NAN}, {8001, true, INFINITY},
-};
-
-/* Of the scan before, nothing remains. */
-void test_what_a_ray_shows_depends_on_the_limits(void)
-{
-    config.min_mm = 200;
-    config.max_mm = 8000;
-    add_turn(0);
-    convert();
-    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-        config.missing_inf = values[i].missing_inf;
-        scan.count = 0;
-        add(0, 0, 0);
-        add(90, values[i].distance_mm, 9);
-        convert();
-        TEST_ASSERT_EQUAL_FLOAT(values[i].expected, ranges[270]);
-        TEST_ASSERT_EQUAL_FLOAT(values[i].missing_inf ? INFINITY : NAN, ranges[271]);
-        TEST_ASSERT_EQUAL_FLOAT(0.0f, intensities[271]);
-        TEST_ASSERT_EQUAL_FLOAT(isfinite(values[i].expected) ? 9.0f : 0.0f, intensities[270]);
-    }
-    TEST_ASSERT_EQUAL_FLOAT(0.2f, fields.range_min);
-    TEST_ASSERT_EQUAL_FLOAT(8.0f, fields.range_max);
-}
-
-void test_too_near_a_point_does_not_hide_another_and_is_never_free(void)
-{
-    config.missing_inf = true;
-    add(0, 0, 0);
-    add(90, 20, 1);
-    add(90.3f, 4000, 2);
-    add(180, 4000, 3);
-    add(180.3f, 20, 4);
-    convert();
-    TEST_ASSERT_EQUAL_FLOAT(4.0f, ranges[270]);
-    TEST_ASSERT_EQUAL_FLOAT(4.0f, ranges[180]);
-}
 
 void test_masks_count_in_the_messages_degrees_and_are_unknown_never_free(void)
 {
@@ -331,18 +244,76 @@ void test_a_cloud_has_every_range_where_it_was_measured_and_when(void)
     }
 }
 
-void test_a_cloud_leaves_out_what_has_no_range_or_is_masked(void)
+/* ------------------------------------------------------------------------------ told in words */
+
+/* "90,4000,40": a point with its angle, distance and intensity; "turn": many; "begins:-3": the first ray.
+ * "ray:270=3,30": its range and intensity. To the right is 90 degrees for the lidar, -90 for ROS:
+ * ray 270. "cloud:2": so many points; "shown:0=3": the intensity of one. */
+static void tell(char *word)
 {
-    config.seen = (tmini_laser_arc_t){-100.0f, 100.0f};
-    add(0, 0, 1);
-    add(10, 49, 2);
-    add(20, 50, 3);
-    add(90, 12000, 4);
-    add(95, 12001, 5);
-    add(180, 1000, 6);
-    TEST_ASSERT_EQUAL_size_t(2, tmini_cloud_of_scan(&config, &scan, cloud));
-    TEST_ASSERT_EQUAL_FLOAT(3.0f, cloud[0].intensity);
-    TEST_ASSERT_EQUAL_FLOAT(4.0f, cloud[1].intensity);
-    config.min_mm = 0;
-    TEST_ASSERT_EQUAL_size_t(3, tmini_cloud_of_scan(&config, &scan, cloud));
+    const row_member_t members[] = {{"min", MEMBER(config.min_mm)},
+                                    {"max", MEMBER(config.max_mm)},
+                                    {"inf", MEMBER(config.missing_inf)},
+                                    {"complete", MEMBER(scan.complete)}};
+    const size_t number = row_number(word);
+    float a = 0;
+    float b = 0;
+    unsigned distance_mm = 0;
+    unsigned intensity = 0;
+    if (sscanf(word, "%f,%u,%u", &a, &distance_mm, &intensity) == 3) {
+        add(a, (uint16_t)distance_mm, (uint8_t)intensity);
+    } else if (row_is(word, "turn")) {
+        add_turn((float)number);
+    } else if (row_is(word, "empty")) {
+        scan.count = 0;
+    } else if (sscanf(word, "begins:%f", &a) == 1) {
+        TEST_ASSERT_TRUE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
+        TEST_ASSERT_FLOAT_WITHIN(NEAR, a * 0.0174532925f, fields.angle_min);
+    } else if (row_is(word, "seen")) {
+        config.seen = (tmini_laser_arc_t){-(float)number, (float)number};
+    } else if (sscanf(word, "ray:%*u=%f,%f", &a, &b) == 2) {
+        convert();
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(a, ranges[number], word);
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(b, intensities[number], word);
+    } else if (sscanf(word, "limits:%f,%f", &a, &b) == 2) {
+        TEST_ASSERT_EQUAL_FLOAT(a, fields.range_min);
+        TEST_ASSERT_EQUAL_FLOAT(b, fields.range_max);
+    } else if (row_is(word, "cloud")) {
+        TEST_ASSERT_EQUAL_size_t(number, tmini_cloud_of_scan(&config, &scan, cloud));
+    } else if (sscanf(word, "shown:%*u=%f", &a) == 1) {
+        TEST_ASSERT_EQUAL_FLOAT(a, cloud[number].intensity);
+    } else {
+        TEST_ASSERT_TRUE_MESSAGE(row_stores(word, members), word);
+    }
+}
+
+#define LIMITED "min:200 max:8000 turn ray:0=1,7 empty 0,0,0 "
+
+static const row_t rows[] = {
+    ROW(the_first_ray_is_ahead_until_a_complete_scan_shows_where_it_stays,
+        "turn:116 complete:0 begins:0 complete:1 begins:-115 empty turn:118 begins:-115"),
+    /* The last points of a turn may lie beyond its first one, here nearer than those. */
+    ROW(where_a_turn_overlaps_itself_each_ray_has_its_own_end,
+        "turn 0,500,0 0.9,501,0 1.8,502,0 2.7,503,0 3.6,504,0 ray:0=0.5,0 ray:359=1.001,7 "
+        "ray:358=1.002,7 ray:357=1.003,7 ray:356=1.004,7"),
+    ROW(a_ray_has_its_nearest_point_and_that_points_intensity,
+        "0,1,0 90,4000,40 90.2,3000,30 90.4,5000,50 ray:270=3,30"),
+    ROW(of_the_scan_before_nothing_remains, LIMITED "90,0,9 ray:270=nan,0 ray:271=nan,0"),
+    ROW(what_is_missing_may_be_infinite, LIMITED "90,0,9 inf:1 ray:270=inf,0 ray:271=inf,0"),
+    ROW(what_is_too_near_is_missing, LIMITED "90,199,9 ray:270=nan,0 ray:271=nan,0"),
+    ROW(what_is_too_near_is_never_infinite, LIMITED "90,199,9 inf:1 ray:270=nan,0 ray:271=inf,0"),
+    ROW(the_lower_limit_itself_is_shown, LIMITED "90,200,9 inf:1 ray:270=0.2,9 limits:0.2,8"),
+    ROW(the_upper_limit_itself_is_shown, LIMITED "90,8000,9 ray:270=8,9 limits:0.2,8"),
+    ROW(what_is_too_far_is_missing, LIMITED "90,8001,9 ray:270=nan,0"),
+    ROW(what_is_too_far_may_be_infinite, LIMITED "90,8001,9 inf:1 ray:270=inf,0"),
+    ROW(too_near_a_point_does_not_hide_another_and_is_never_free,
+        "inf:1 0,0,0 90,20,1 90.3,4000,2 180,4000,3 180.3,20,4 ray:270=4,2 ray:180=4,3"),
+    ROW(a_cloud_leaves_out_what_has_no_range_or_is_masked,
+        "seen:100 0,0,1 10,49,2 20,50,3 90,12000,4 95,12001,5 180,1000,6 cloud:2 shown:0=3 "
+        "shown:1=4 min:0 cloud:3"),
+};
+
+void test_each_row(void)
+{
+    tell_rows(rows, tell);
 }
