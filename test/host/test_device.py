@@ -48,13 +48,19 @@ def lines(run, count):
 
 
 @pytest.fixture
-def scanning(start):
-    """scanning(port, …): `tmini scan`, which has printed two lines."""
-    def begin(port, *words):
-        run = start("scan", "-p", port, *words)
+def scanning(lidar, start):
+    """scanning(*words): a lidar, and `tmini scan`, which has printed two lines; plug(device) names another port."""
+    def begin(*words, options=(), plug=lambda device: device):
+        device = lidar(*options)
+        run = start("scan", "-p", plug(device.port), *words)
         lines(run, 2)
-        return run
+        return device, run
     return begin
+
+
+def adapter(device):
+    plug_in(device)
+    return "adapter"
 
 
 def wait_for_size(run, path, size):
@@ -257,9 +263,8 @@ def test_with_closed_output_nothing_goes_to_the_lidar(real_lidar):
 
 
 @pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
-def test_a_signal_stops_the_lidar_before_leaving(lidar, scanning, number):
-    device = lidar()
-    run = scanning(device.port)
+def test_a_signal_stops_the_lidar_before_leaving(scanning, number):
+    device, run = scanning()
     assert run.end(number).status == 0
     assert "tmini: " not in run.err
     device.wait_for_log("stopping -> idle")
@@ -293,26 +298,20 @@ def test_a_lidar_that_scans_although_it_was_stopped_is_stopped_again(lidar, star
 
 # ------------------------------------------------------------------------------------------- losses, and --wait
 
-def test_a_cable_pulled_while_scanning_is_reported(lidar, scanning):
-    device = lidar()
-    run = scanning(device.port)
-    device.unplug()
+@pytest.mark.parametrize("options, befalls, said", (
+    pytest.param((), "unplug", ("has gone: the adapter was unplugged", "Plug it in"), id="a_pulled_cable"),
+    pytest.param((), "freeze", ("has fallen silent; starting it again", "has fallen silent and does not come back"),
+                 id="silence"),
+    pytest.param(("--tcp", "0"), "unplug", (" has gone: the other end closed",), id="a_closed_socket")))
+def test_what_ends_a_scan_is_reported(scanning, options, befalls, said):
+    device, run = scanning(options=options)
+    getattr(device, befalls)()
     assert run.finish().status == 1
-    assert "has gone: the adapter was unplugged" in run.err and "Plug it in" in run.err
+    assert all(text in run.err for text in said), run.err
 
 
-def test_a_lidar_that_falls_silent_while_scanning_is_reported(lidar, scanning):
-    device = lidar()
-    run = scanning(device.port)
-    device.freeze()
-    assert run.finish().status == 1
-    assert "has fallen silent; starting it again" in run.err
-    assert "has fallen silent and does not come back" in run.err
-
-
-def test_a_lidar_that_comes_back_is_reported(lidar, scanning):
-    device = lidar()
-    run = scanning(device.port)
+def test_a_lidar_that_comes_back_is_reported(scanning):
+    device, run = scanning()
     device.freeze()
     run.wait_for("the lidar has fallen silent; starting it again\n")
     device.thaw()
@@ -322,9 +321,7 @@ def test_a_lidar_that_comes_back_is_reported(lidar, scanning):
 
 
 def test_with_wait_a_scan_continues_after_a_pulled_cable(lidar, scanning):
-    device = lidar()
-    plug_in(device.port)
-    run = scanning("adapter", "--wait")
+    device, run = scanning("--wait", plug=adapter)
     device.unplug()
     plug_in(None)
     run.wait_for("adapter is not there; waiting for it\n")
@@ -359,9 +356,7 @@ def test_with_wait_a_port_that_is_not_there_yet_is_waited_for(lidar, start):
 
 
 def test_with_wait_another_lidar_on_the_port_is_not_taken(lidar, scanning, other):
-    device = lidar()
-    plug_in(device.port)
-    run = scanning("adapter", "--wait")
+    device, run = scanning("--wait", plug=adapter)
     device.unplug()
     plug_in(None)
     run.wait_for("waiting for it\n")
@@ -420,22 +415,22 @@ def test_two_equal_adapters_are_told_apart_by_their_places(computer, talker, out
         "root/dev/serial/by-path/pci-1.1", "root/dev/serial/by-path/pci-1.2"]
 
 
-@pytest.mark.parametrize("given, awaited", (("serial/by-path/pci-1", "serial/by-path/pci-1"),
-                                            ("serial/by-id/usb-7", "serial/by-id/usb-7"),
-                                            ("ttyUSB0", "ttyUSB0")))
-def test_with_wait_the_name_that_was_given_is_kept(computer, lidar, scanning, given, awaited):
-    device = lidar()
-    computer("ttyUSB0", device.port, serial="7", by_id="usb-7", by_path="pci-1")
-    run = scanning(f"root/dev/{given}", "--wait")
+@pytest.mark.parametrize("name", ("serial/by-path/pci-1", "serial/by-id/usb-7", "ttyUSB0"))
+def test_with_wait_the_name_that_was_given_is_kept(computer, scanning, name):
+    def plug(device):
+        computer("ttyUSB0", device, serial="7", by_id="usb-7", by_path="pci-1")
+        return f"root/dev/{name}"
+    device, run = scanning("--wait", plug=plug)
     device.unplug()
-    run.wait_for(f"root/dev/{awaited} is not there; waiting for it\n")
+    run.wait_for(f"root/dev/{name} is not there; waiting for it\n")
 
 
 def test_with_wait_the_name_of_a_device_becomes_that_of_its_adapter(computer, lidar, scanning):
     """The next adapter that is plugged in may get the name /dev/ttyUSB0."""
-    device = lidar()
-    computer("ttyUSB0", device.port, serial="7", by_id="usb-7", by_path="pci-1")
-    run = scanning(device.port, "--wait")
+    def plug(device):
+        computer("ttyUSB0", device, serial="7", by_id="usb-7", by_path="pci-1")
+        return device
+    device, run = scanning("--wait", plug=plug)
     device.unplug()
     run.wait_for("root/dev/serial/by-id/usb-7 is not there; waiting for it\n")
     computer("ttyUSB1", lidar().port, serial="7", by_id="usb-7")
@@ -580,20 +575,15 @@ def test_a_port_that_is_none(fails, port, reason):
     fails(1, reason, "info", "-p", port)
 
 
-def test_a_socket_that_is_closed_is_reported(lidar, scanning, fails, output):
+def test_a_socket_is_a_port_while_a_lidar_is_at_its_other_end(lidar, fails, output):
     device = lidar("--tcp", "0")
     assert output("health", "-p", device.port) == "healthy\n"
-    run = scanning(device.port)
     device.unplug()
-    assert run.finish().status == 1 and " has gone: the other end closed" in run.err
     fails(1, "Connection refused", "info", "-p", device.port)
 
 
-def test_a_port_that_another_program_uses(lidar, scanning, fails):
-    port = lidar().port
-    run = scanning(port)
-    fails(1, "another program is using it", "info", "-p", port)
-    run.end()
+def test_a_port_that_another_program_uses(scanning, fails):
+    fails(1, "another program is using it", "info", "-p", scanning()[0].port)
 
 
 @pytest.mark.skipif(not HAS_RIGHTS, reason="only root can give up rights")
@@ -635,9 +625,8 @@ def test_a_network_that_delivers_late_spoils_no_scan(lidar, tmini):
     assert 40 <= min(steps) and max(steps) <= 130, steps
 
 
-def test_after_a_silence_in_a_network_times_are_right_at_once(lidar, scanning, clock):
-    device = lidar("--tcp", "0")
-    run = scanning(device.port, "--json")
+def test_after_a_silence_in_a_network_times_are_right_at_once(scanning, clock):
+    device, run = scanning("--json", options=("--tcp", "0"))
     lines(run, 3)
     begun_ms = clock.now_ms()
     device.freeze()
