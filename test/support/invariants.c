@@ -301,10 +301,12 @@ static unsigned asks_max(uint8_t phase)
 }
 
 /* Only a step that has been sent can be in vain. */
-static unsigned steps_max(uint8_t phase)
+static unsigned steps_max(const tmini_command_t *command)
 {
-    const bool is_sent = phase == TMINI_PHASE_AWAITING || phase == TMINI_PHASE_UNCHANGED;
-    return is_sent ? STEPS_MAX : STEPS_MAX + STEPS_IN_VAIN;
+    const bool is_sent =
+        command->phase == TMINI_PHASE_AWAITING || command->phase == TMINI_PHASE_UNCHANGED;
+    return command->operation == TMINI_EVENT_FREQUENCY && is_sent ? STEPS_MAX
+                                                                  : STEPS_MAX + STEPS_IN_VAIN;
 }
 
 static bool command_is_sound(const tmini_command_t *command)
@@ -313,8 +315,8 @@ static bool command_is_sound(const tmini_command_t *command)
     return is_operation(command->operation) && unsent_is_sound(command->unsent) &&
            (!is_sending || (is_code(command->code) && command->phase > TMINI_PHASE_IDLE)) &&
            (command->timeout_ms == 0 || command->phase > TMINI_PHASE_IDLE) &&
-           command->steps <= steps_max(command->phase) &&
-           command->asks <= asks_max(command->phase) && command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
+           command->steps <= steps_max(command) && command->asks <= asks_max(command->phase) &&
+           command->frequency_chz <= PLAUSIBLE_CHZ_MAX;
 }
 
 static bool monitor_is_sound(const tmini_monitor_t *monitor)
