@@ -10,7 +10,9 @@
  *                     the blocking command, for at most 100 ms
  *     waited:5        the calls of `wait` so far
  *     model:151 serial:4 error:0x10 code:0x1234 chz:640   the last results; at first 1 to 5
- *     no-wait runs    the port has no `wait`; its clock goes on whenever it is read */
+ *     no-lidar:1 no-result:1  commands are called with NULL for this
+ *     no-wait runs    the port has no `wait`; its clock goes on whenever it is read
+ *     half writes:2   the port takes A5, and then nothing; how often it was to write */
 
 #include "tale.h"
 
@@ -27,6 +29,8 @@ static struct {
     char words[COMING_MAX][16];
     unsigned count;
     uint32_t every_ms; /* How often the last of these comes; 0: once. */
+    bool no_lidar;
+    bool no_result;
     uint32_t waited;
     unsigned writes;
     uint16_t answer_chz;
@@ -77,26 +81,34 @@ static uint32_t running_clock(void *context)
     return rig.now_ms++;
 }
 
+static int take_one_byte(void *context, const uint8_t *bytes, size_t count)
+{
+    TEST_ASSERT_EQUAL_HEX8(script.writes == 0 ? 0xA5 : 0x90, bytes[0]);
+    (void)context;
+    (void)count;
+    return script.writes++ == 0 ? 1 : 0;
+}
+
 /* Whether the word is a command; if it is, carries it out. */
 static bool command(const char *word, int *status)
 {
-    const char *const at = strchr(word, ':');
-    const uint32_t ms = at != NULL ? (uint32_t)atol(at + 1) : 0;
-    if (at == NULL) {
+    tmini_t *const lidar = script.no_lidar ? NULL : &rig.lidar;
+    const uint32_t ms = row_number(word);
+    if (row_text(word)[0] == '\0') {
         return false;
     } else if (row_is(word, "read-info")) {
-        *status = tmini_blocking_read_info(&rig.lidar, &script.info, ms);
+        *status = tmini_blocking_read_info(lidar, script.no_result ? NULL : &script.info, ms);
     } else if (row_is(word, "read-health")) {
-        *status = tmini_blocking_read_health(&rig.lidar, &script.health, ms);
+        *status = tmini_blocking_read_health(lidar, script.no_result ? NULL : &script.health, ms);
     } else if (row_is(word, "read-frequency")) {
-        *status = tmini_blocking_read_frequency(&rig.lidar, &script.frequency_chz, ms);
+        *status = tmini_blocking_read_frequency(
+            lidar, script.no_result ? NULL : &script.frequency_chz, ms);
     } else if (row_is(word, "set-to")) {
-        *status = tmini_blocking_set_frequency(&rig.lidar, (uint16_t)ms,
-                                               (uint32_t)atol(strchr(at + 1, ':') + 1));
+        *status = tmini_blocking_set_frequency(lidar, (uint16_t)ms, row_number(row_text(word)));
     } else if (row_is(word, "start")) {
-        *status = tmini_blocking_start(&rig.lidar, ms);
+        *status = tmini_blocking_start(lidar, ms);
     } else if (row_is(word, "stop")) {
-        *status = tmini_blocking_stop(&rig.lidar, ms);
+        *status = tmini_blocking_stop(lidar, ms);
     } else {
         return false;
     }
@@ -105,29 +117,33 @@ static bool command(const char *word, int *status)
 
 static bool tell(char *word)
 {
-    const char *const at = strchr(word, ':');
     char *const wanted = strchr(word, '=');
     const row_number_t results[] = {
         {"waited", script.waited},          {"model", script.info.model},
         {"serial", script.info.serial[15]}, {"error", script.health.faults},
         {"code", script.health.error_code}, {"chz", script.frequency_chz},
+        {"writes", script.writes},
+    };
+    const row_member_t members[] = {
+        {"each", MEMBER(script.every_ms)},
+        {"answers", MEMBER(script.answer_chz)},
+        {"no-lidar", MEMBER(script.no_lidar)},
+        {"no-result", MEMBER(script.no_result)},
     };
     int status;
     if (row_is(word, "in")) {
         tale_set_up();
-        plan(at + 1);
-    } else if (row_is(word, "each")) {
-        script.every_ms = (uint32_t)atol(at + 1);
-    } else if (row_is(word, "answers")) {
-        script.answer_chz = (uint16_t)atoi(at + 1);
+        plan(row_text(word));
     } else if (row_is(word, "no-wait")) {
         rig.port.wait = NULL;
+    } else if (row_is(word, "half")) {
+        rig.port.write = take_one_byte;
     } else if (row_is(word, "runs")) {
         rig.port.now_ms = running_clock;
     } else if (command(word, &status)) {
         tale_expect_status(wanted != NULL ? wanted + 1 : NULL, status);
     } else {
-        return row_expects(word, results);
+        return row_stores(word, members) || row_expects(word, results);
     }
     return true;
 }
@@ -225,45 +241,20 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_command_that_cannot_be_begun_does_not_wait,
         "scans read-info:100=STATE read-health:100=STATE read-frequency:100=STATE waited:0 "
         "@SCANNING"),
+    ROW(a_command_given_up_half_sent_is_not_sent_any_further,
+        "idle half read-info:0=TIMEOUT drain writes:2"),
+    ROW(every_command_needs_a_lidar,
+        "idle no-lidar:1 read-info:100=ARGUMENT read-health:100=ARGUMENT "
+        "read-frequency:100=ARGUMENT "
+        "set-to:700:100=ARGUMENT start:100=ARGUMENT stop:100=ARGUMENT @IDLE"),
+    ROW(a_question_needs_a_place_for_its_answer,
+        "idle no-result:1 read-info:100=ARGUMENT read-health:100=ARGUMENT "
+        "read-frequency:100=ARGUMENT @IDLE"),
 };
 
 void test_tales(void)
 {
     run_rows(tales, tale_tell_row);
-}
-
-static int take_one_byte(void *context, const uint8_t *bytes, size_t count)
-{
-    TEST_ASSERT_EQUAL_HEX8(script.writes == 0 ? 0xA5 : 0x90, bytes[0]);
-    (void)context;
-    (void)count;
-    return script.writes++ == 0 ? 1 : 0;
-}
-
-void test_a_command_given_up_half_sent_is_not_sent_any_further(void)
-{
-    tale_tell("idle");
-    rig.port.write = take_one_byte;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_TIMEOUT,
-                          tmini_blocking_read_info(&rig.lidar, &script.info, 0));
-    tale_tell("drain");
-    TEST_ASSERT_EQUAL_UINT(2, script.writes);
-}
-
-void test_null_pointers_are_refused(void)
-{
-    static const int refused = TMINI_ERROR_ARGUMENT;
-    tale_tell("idle");
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_info(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_health(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_frequency(&rig.lidar, NULL, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_info(NULL, &script.info, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_health(NULL, &script.health, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_read_frequency(NULL, &script.frequency_chz, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_set_frequency(NULL, 700, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_start(NULL, 100));
-    TEST_ASSERT_EQUAL_INT(refused, tmini_blocking_stop(NULL, 100));
-    tale_tell("@IDLE");
 }
 
 /* ---- Other clocks ---- */
