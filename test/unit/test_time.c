@@ -23,11 +23,6 @@ void setUp(void)
                           .complete = true};
 }
 
-static void expect_time(size_t index, uint32_t time_us)
-{
-    TEST_ASSERT_EQUAL_UINT32(time_us, tmini_point_time_us(&scan, index));
-}
-
 /* ---------------------------------------------------------------------------------------- rows */
 
 /* Words of the rows. Angles are sixty-fourths of a degree, with "d" degrees: 4d-1.
@@ -50,10 +45,12 @@ static void set_angles(const char *text)
 static void tell_word(char *word)
 {
     const row_number_t numbers[] = {{"period", tmini_scan_period_ms(&scan)}};
-    if (row_is(word, "chz")) {
-        scan.frequency_chz = (uint16_t)row_number(word);
-    } else if (row_is(word, "count")) {
-        scan.count = (uint16_t)row_number(word);
+    const row_member_t members[] = {
+        {"chz", MEMBER(scan.frequency_chz)},
+        {"count", MEMBER(scan.count)},
+    };
+    if (row_stores(word, members)) {
+        return;
     } else if (row_is(word, "took")) {
         scan.end_ms = scan.start_ms + row_number(word);
     } else if (row_is(word, "incomplete")) {
@@ -130,12 +127,11 @@ void test_late_points_beyond_256_are_a_turn_later(void)
     }
     points[512].angle_q6 = 0;
     points[513].angle_q6 = 5;
-    expect_time(512, 128496);
-    expect_time(513, 128523);
+    row_tell("@512:128496 @513:128523", tell_word);
     for (uint16_t i = 1; i < 256; i++) {
         points[i].angle_q6 = 0; /* Many early points change nothing. */
     }
-    expect_time(513, 128523);
+    row_tell("@513:128523", tell_word);
 }
 
 /* The lidar turns at exactly `chz`, takes 4000 samples per second, and reports 0.05 Hz less. */
