@@ -39,14 +39,6 @@ static tmini_ct_verdict_t verdict_on(uint8_t ct, uint16_t gap, uint8_t skipped)
     return tmini_ct_add(&state, &packet, is_whole);
 }
 
-/* Packets of that unit from index `first` to `last` in their turn. */
-static void add_unit(size_t first, size_t last)
-{
-    for (size_t i = first; i <= last; i++) {
-        TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(unit[i], 0, 0xD8));
-    }
-}
-
 /* ---------------------------------------------------------------------------------------- rows */
 
 /* Words of the rows:
@@ -98,7 +90,9 @@ static void tell_word(char *word)
     if (strchr("<+-", word[0]) != NULL) {
         tell_packet(word);
     } else if (row_is(word, "unit")) {
-        add_unit(row_number(word), row_number(strchr(word, ':') + 1));
+        for (size_t i = row_number(word); i <= row_number(row_text(word)); i++) {
+            TEST_ASSERT_EQUAL_INT(TMINI_CT_UNKNOWN, verdict_on(unit[i], 0, 0xD8));
+        }
     } else if (row_is(word, "discard")) {
         tmini_ct_discard(&state);
         is_whole = false;
@@ -183,7 +177,7 @@ void test_every_wrong_last_crc_refutes_the_turn(void)
     for (unsigned crc = 0; crc <= 255; crc++) {
         if (crc != 0xD8) {
             setUp();
-            add_unit(0, 16);
+            row_tell("unit:0:16", tell_word);
             TEST_ASSERT_EQUAL_INT(TMINI_CT_REFUTED, verdict_on(0x79, 1, (uint8_t)crc));
             expect_number("known:0");
         }
