@@ -11,16 +11,20 @@ import socket
 from pathlib import Path
 
 import pytest
+from conftest import plug_in
 from lidar_bytes import MAGIC
 
 BRIDGE = os.environ["TMINI_BRIDGE"]
 
 
 @pytest.fixture
-def bridge(start):
-    """bridge(port): the program; its `port` is for listeners."""
-    def begin(port, *words):
-        one = start(*words, port, "0", program=BRIDGE)
+def bridge(lidar, start):
+    """bridge(): the program; `device` is its lidar, plugged in as "adapter"; `port` is for listeners."""
+    def begin(*words):
+        device = lidar()
+        plug_in(device.port)
+        one = start(*words, "adapter", "0", program=BRIDGE)
+        one.device = device
         one.wait_for("tcp:")
         one.port = one.out.strip()
         return one
@@ -75,29 +79,27 @@ def counts(tmini, content):
     return json.loads(Path("stats.json").read_text(encoding="ascii")), run.out + run.err
 
 
-def test_the_tool_sees_the_room_and_the_lidar_rests_when_nobody_listens(lidar, bridge, tmini):
-    device = lidar()
-    one = bridge(device.port, "-f", "8")
-    assert "command A5 60" not in device.log
+def test_the_tool_sees_the_room_and_the_lidar_rests_when_nobody_listens(bridge, tmini):
+    one = bridge("-f", "8")
+    assert "command A5 60" not in one.device.log
     run = tmini("scan", "-p", one.port, "-n", "5", "--json")
     scans = [json.loads(line) for line in run.out.splitlines()]
     assert run.status == 0
     assert [scan["complete"] for scan in scans] == [True] * 5
     assert 7.8 < scans[-1]["frequency_hz"] < 8.2
-    device.wait_for_log("stopping -> idle")
+    one.device.wait_for_log("stopping -> idle")
     assert one.end(signal.SIGTERM).status == 0
 
 
-def test_a_lidar_that_scans_is_stopped_when_the_bridge_ends(lidar, bridge, listen, clock):
-    device = lidar()
-    one = bridge(device.port)
+def test_a_lidar_that_scans_is_stopped_when_the_bridge_ends(bridge, listen, clock):
+    one = bridge()
     receive(clock, listen(one), 20000)
     assert one.end(signal.SIGHUP).status == 0
-    device.wait_for_log("stopping -> idle")
+    one.device.wait_for_log("stopping -> idle")
 
 
-def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(lidar, bridge, listen, clock, tmini):
-    one = bridge(lidar().port)
+def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(bridge, listen, clock, tmini):
+    one = bridge()
     slow, well = listen(one), listen(one)
     content = receive(clock, well, 140000)
     receive(clock, slow, 1)
@@ -110,19 +112,17 @@ def test_a_slow_listener_is_told_what_it_lost_and_the_others_lose_nothing(lidar,
     assert stats["checksum_errors"] <= places  # One packet is cut at each.
 
 
-def test_a_listener_that_takes_nothing_for_15_s_is_left(lidar, bridge, listen, clock):
-    device = lidar()
-    one = bridge(device.port)
+def test_a_listener_that_takes_nothing_for_15_s_is_left(bridge, listen, clock):
+    one = bridge()
     dead = listen(one)
-    device.wait_for_log("idle -> scanning")
+    one.device.wait_for_log("idle -> scanning")
     clock.sleep(22000)
-    device.wait_for_log("stopping -> idle")
+    one.device.wait_for_log("stopping -> idle")
     assert len(receive(clock, dead, 10**9)) < 5 * 13100  # What the system had taken, then the end.
 
 
-def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(lidar, bridge, listen, clock):
-    device = lidar()
-    one = bridge(device.port)
+def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(bridge, listen, clock):
+    one = bridge()
     well = listen(one)
     for content in (b"\xA5\x40", b"GET / HTTP/1.1\r\n\r\n", b"\0" * 100000):
         hostile = listen(one)
@@ -132,12 +132,12 @@ def test_who_sends_something_is_left_and_the_lidar_hears_nothing_of_it(lidar, br
         assert len(receive(clock, hostile, 10**6)) < 10**6
     assert len(receive(clock, well, 20000)) == 20000
     assert one.end().status == 0
-    commands = {line.split("command ")[1][:5] for line in device.log.splitlines() if "command " in line}
+    commands = {line.split("command ")[1][:5] for line in one.device.log.splitlines() if "command " in line}
     assert commands == {"A5 0D", "A5 60", "A5 65"}
 
 
-def test_there_are_four_listeners_at_most(lidar, bridge, listen, clock):
-    one = bridge(lidar().port)
+def test_there_are_four_listeners_at_most(bridge, listen, clock):
+    one = bridge()
     four = [listen(one) for _ in range(4)]
     assert receive(clock, listen(one), 1) == b""
     four.pop().close()
@@ -152,8 +152,8 @@ def held(program):
             int(re.search(r"VmHWM:\s*(\d+)", (process / "status").read_text(encoding="ascii"))[1]))
 
 
-def test_200_strangers_cost_nothing_and_the_others_lose_nothing(lidar, bridge, listen, clock, tmini):
-    one = bridge(lidar().port)
+def test_200_strangers_cost_nothing_and_the_others_lose_nothing(bridge, listen, clock, tmini):
+    one = bridge()
     well = listen(one)
     content = receive(clock, well, 40000)
     before = held(one)
@@ -174,25 +174,23 @@ def test_200_strangers_cost_nothing_and_the_others_lose_nothing(lidar, bridge, l
 
 
 def test_a_lidar_that_comes_back_goes_on_after_a_gap(lidar, bridge, listen, clock, tmini):
-    device = lidar()
-    Path("adapter").symlink_to(device.port)
-    one = bridge("adapter")
+    one = bridge()
     listener = listen(one)
     content = receive(clock, listener, 20000)
-    device.unplug()
-    Path("adapter").unlink()
+    one.device.unplug()
+    plug_in(None)
     one.wait_for("lost")
-    Path("adapter").symlink_to(lidar().port)
+    plug_in(lidar().port)
     content += receive(clock, listener, 30000)
     stats, text = counts(tmini, content)
     assert "damaged in" in text
     assert stats["start_packets"] > 15
 
 
-def test_it_is_on_the_loopback_interface_unless_asked(lidar, bridge, listen):
+def test_it_is_on_the_loopback_interface_unless_asked(bridge, listen):
     with pytest.raises(ConnectionRefusedError):
-        listen(bridge(lidar().port), "127.0.0.2")
-    listen(bridge(lidar().port, "--all"), "127.0.0.2")
+        listen(bridge(), "127.0.0.2")
+    listen(bridge("--all"), "127.0.0.2")
 
 
 @pytest.mark.parametrize("words", ["", "--what x", "x 70000", "-f 13 x", "-f 5 x", "x 1 2", "-f"])
