@@ -114,15 +114,6 @@ static void rest(void)
     (void)select(0, NULL, NULL, NULL, &moment);
 }
 
-static void accept_connection(void)
-{
-    rest();
-    if (its_end < 0) {
-        its_end = accept(listener, NULL, NULL);
-        (void)fcntl(its_end, F_SETFL, O_NONBLOCK);
-    }
-}
-
 static void send_to_port(const uint8_t *bytes, size_t count)
 {
     int waiting = 0;
@@ -139,7 +130,11 @@ static void pass_ms(void)
     ssize_t count = 0;
     now_us += 1000;
     if (listener >= 0) {
-        accept_connection();
+        rest();
+    }
+    if (listener >= 0 && its_end < 0) {
+        its_end = accept(listener, NULL, NULL);
+        (void)fcntl(its_end, F_SETFL, O_NONBLOCK);
     }
     while ((count = read(its_end, bytes, sizeof bytes)) > 0) {
         sim_receive(&unit, bytes, (size_t)count, now_us);
@@ -241,14 +236,6 @@ static void begin_by_socket(void)
     TEST_ASSERT_NOT_EQUAL_INT(0, sends_at_once);
 }
 
-static tmini_status_t read_info(void)
-{
-    tmini_info_t info;
-    const tmini_status_t status = tmini_blocking_read_info(&lidar, &info, 8000);
-    TEST_ASSERT_TRUE(status != TMINI_OK || info.model == 151);
-    return status;
-}
-
 /* Polls until the event comes, at most 20 s. */
 static void poll_until(tmini_event_t wanted)
 {
@@ -277,33 +264,25 @@ static void start_on_pair(tmini_t *for_lidar, const uint8_t *bytes, size_t count
 /* ---- Opening ---- */
 
 static const struct {
-    const char *path;
     tmini_posix_status_t status;
+    const char *paths[6];
 } unopened[] = {
-    {"/dev/nowhere", TMINI_POSIX_NO_DEVICE},
-    {"/dev/null", TMINI_POSIX_NOT_A_TERMINAL},
-    {"/tmp", TMINI_POSIX_NOT_A_TERMINAL},
+    {TMINI_POSIX_NO_DEVICE, {"/dev/nowhere"}},
+    {TMINI_POSIX_NOT_A_TERMINAL, {"/dev/null", "/tmp"}},
     /* Nothing listens there. */
-    {"tcp:127.0.0.1:1", TMINI_POSIX_FAILED},
-    {"tcp:[::1]:1", TMINI_POSIX_FAILED},
-    {"tcp:::1:1", TMINI_POSIX_FAILED},
-    {"tcp:", TMINI_POSIX_ADDRESS},
-    {"tcp:host", TMINI_POSIX_ADDRESS},
-    {"tcp::1", TMINI_POSIX_ADDRESS},
-    {"tcp:host:", TMINI_POSIX_ADDRESS},
-    {"tcp:127.0.0.1:0", TMINI_POSIX_ADDRESS},
-    {"tcp:127.0.0.1:65536", TMINI_POSIX_ADDRESS},
-    {"tcp:127.0.0.1:99999", TMINI_POSIX_ADDRESS},
-    {"tcp:127.0.0.1:1x", TMINI_POSIX_ADDRESS},
-    {"tcp:no.such.host.invalid:1", TMINI_POSIX_ADDRESS},
+    {TMINI_POSIX_FAILED, {"tcp:127.0.0.1:1", "tcp:[::1]:1", "tcp:::1:1"}},
+    {TMINI_POSIX_ADDRESS, {"tcp:", "tcp:host", "tcp::1", "tcp:host:", "tcp:127.0.0.1:0"}},
+    {TMINI_POSIX_ADDRESS, {"tcp:127.0.0.1:65536", "tcp:127.0.0.1:99999", "tcp:127.0.0.1:1x"}},
+    {TMINI_POSIX_ADDRESS, {"tcp:no.such.host.invalid:1"}},
 };
 
 void test_each_reason_for_not_opening_has_its_own_status_which_stays(void)
 {
     for (size_t i = 0; i < sizeof unopened / sizeof unopened[0]; i++) {
-        const char *const path = unopened[i].path;
-        TEST_ASSERT_EQUAL_INT_MESSAGE(unopened[i].status, start(&port, path), path);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(unopened[i].status, tmini_posix_wait(&port, 0), path);
+        for (const char *const *path = unopened[i].paths; *path != NULL; path++) {
+            TEST_ASSERT_EQUAL_INT_MESSAGE(unopened[i].status, start(&port, *path), *path);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(unopened[i].status, tmini_posix_wait(&port, 0), *path);
+        }
     }
 }
 
@@ -494,16 +473,18 @@ static void tap(void *context, const uint8_t *bytes, size_t count)
 static const struct {
     const char *name;
     int value;
-} values[] = {{"nodevice", TMINI_POSIX_NO_DEVICE},
-              {"unplugged", TMINI_POSIX_UNPLUGGED},
-              {"failed", TMINI_POSIX_FAILED},
-              {"unwritten", TMINI_ERROR_WRITE},
-              {"refused", -1},
-              {"scan", TMINI_EVENT_SCAN},
-              {"lost", TMINI_EVENT_LOST},
-              {"recovered", TMINI_EVENT_RECOVERED},
-              {"signal", EINTR},
-              {"memory", ENOMEM}};
+} values[] = {
+    {"nodevice", TMINI_POSIX_NO_DEVICE},
+    {"unplugged", TMINI_POSIX_UNPLUGGED},
+    {"failed", TMINI_POSIX_FAILED},
+    {"unwritten", TMINI_ERROR_WRITE},
+    {"refused", -1},
+    {"scan", TMINI_EVENT_SCAN},
+    {"lost", TMINI_EVENT_LOST},
+    {"recovered", TMINI_EVENT_RECOVERED},
+    {"signal", EINTR},
+    {"memory", ENOMEM},
+};
 
 static int value_of(const char *name)
 {
@@ -542,6 +523,7 @@ static void tell(char *word)
 {
     static const uint8_t bytes[2000];
     const uint32_t number = row_number(word);
+    tmini_info_t info;
     char *const equals = strchr(word, '=');
     const int wanted = equals != NULL ? value_of(equals + 1) : 0;
     int status = wanted;
@@ -576,7 +558,8 @@ static void tell(char *word)
     } else if (row_is(word, "tap")) {
         tmini_posix_tap(&port, number != 0 ? tap : NULL, &tapped);
     } else if (row_is(word, "info")) {
-        status = (int)read_info();
+        status = (int)tmini_blocking_read_info(&lidar, &info, 8000);
+        TEST_ASSERT_TRUE(status != 0 || info.model == 151);
     } else if (row_is(word, "scan")) {
         status = (int)tmini_start(&lidar);
     } else if (row_is(word, "poll")) {

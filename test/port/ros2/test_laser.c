@@ -167,17 +167,7 @@ void test_the_times_of_a_turn_follow_from_its_end_and_its_frequency_or_are_unkno
 }
 
 /* Points 100 to 199 of a turn at 10 Hz: from 90 to 179.1 degrees, 25 ms after its beginning. The
- * scan is ended by a packet that comes much later. */
-static void lose_all_but_a_quarter(void)
-{
-    convert();
-    memmove(points, &points[100], 100 * sizeof points[0]);
-    scan.count = 100;
-    scan.complete = false;
-    scan.start_ms = 7025;
-    scan.end_ms = 7400;
-}
-
+ * scan is ended by a packet that comes much later. The turn was from 7000 to 7100. */
 void test_the_times_of_a_part_of_a_turn_follow_from_its_first_point(void)
 {
     for (int mirrored = 0; mirrored < 2; mirrored++) {
@@ -185,9 +175,13 @@ void test_the_times_of_a_part_of_a_turn_follow_from_its_first_point(void)
         scan.count = 0;
         scan.complete = true;
         add_turn(0);
-        lose_all_but_a_quarter();
+        convert();
+        memmove(points, &points[100], 100 * sizeof points[0]);
+        scan.count = 100;
+        scan.complete = false;
+        scan.start_ms = 7025;
+        scan.end_ms = 7400;
         TEST_ASSERT_TRUE(tmini_laser_of_scan(&laser, &scan, ranges, intensities, &fields));
-        /* The turn was from 7000 to 7100. */
         TEST_ASSERT_INT32_WITHIN(300, mirrored != 0 ? -400000 : -300000, fields.stamp_us);
     }
 }
