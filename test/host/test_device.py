@@ -518,10 +518,6 @@ def test_listening_sends_nothing(lidar, tmini):
     assert device.log.count("command ") == 1
 
 
-def test_listening_to_a_silent_lidar_is_reported(lidar, fails):
-    fails(1, "has another program or controller started the lidar?", "scan", "-p", lidar().port, "--listen")
-
-
 # ---------------------------------------------------------------------------------------------------------- survey
 
 def test_survey_writes_a_report_and_leaves_the_lidar_stopped_as_it_was(lidar, folder, output, tmini):
@@ -554,14 +550,14 @@ def test_a_survey_of_another_unit_keeps_some_bytes_without_the_serial_number(lid
     assert "02 00 02 06 00 03 01 07" not in report and "2026031700012345" not in report
 
 
-def test_a_survey_of_nothing_is_reported(talker, fails):
-    fails(1, "not one byte came", "survey", "-p", talker(b""))
-
-
 # --------------------------------------------------------------------------------------------- what can go wrong
 
-def test_without_an_adapter_there_are_no_ports(fails):
-    fails(1, "no USB serial adapter is plugged in", "ports")
+@pytest.mark.parametrize("words, reason", (
+    pytest.param("ports", "no USB serial adapter is plugged in", id="without_an_adapter_there_are_no_ports"),
+    pytest.param("scan -p PORT --listen", "has another program or controller started the lidar?", id="a_silent_lidar"),
+    pytest.param("survey -p PORT", "not one byte came", id="a_survey_of_nothing")))
+def test_nothing_is_reported(talker, fails, words, reason):
+    fails(1, reason, *words.replace("PORT", talker(b"")).split())
 
 
 @pytest.mark.parametrize("port, reason", (
