@@ -518,7 +518,9 @@ static bool is_fact(const char *word)
     return row_expects(word, facts);
 }
 
-/* A call's status is OK, or what follows its "=". */
+/* A call's status is OK, or what follows its "=": "wait:1000=unplugged". "await": without a lidar,
+ * but it may be plugged in at any time; "pair:7": on a socket with 7 bytes, "blocks:7" without a
+ * lidar; "hold": another opens the device, too; "error:signal": poll() fails 7 ms later. */
 static void tell(char *word)
 {
     static const uint8_t bytes[2000];
@@ -600,8 +602,8 @@ static const row_t rows[] = {
     ROW(a_line_without_counters_has_no_errors, "begin errors:0"),
     /* With a lidar as many as it has room for, without one in blocks. */
     ROW(bytes_that_have_waited_are_handed_over_at_once,
-        "blocks:300 hangup wait:1000 received:128 wait:1000 received:256 wait:1000 received:300 "
-        "ms:0 pair:700 hangup wait:1000 received:700 ms:0"),
+        "blocks:300 hangup wait:1000 received:128 ms:0 wait:1000 received:256 ms:0 wait:1000 "
+        "received:300 ms:0 pair:700 hangup wait:1000 received:700 ms:0"),
     ROW(bytes_without_room_stay_with_the_system_and_are_not_waited_for,
         "pair:2000 2( wait:1000 received:1024 ms:0 ) 20( wait:1 9( poll ) ) received:2000 "
         "overrun:0"),
