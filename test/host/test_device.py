@@ -554,10 +554,10 @@ def test_a_survey_of_another_unit_keeps_some_bytes_without_the_serial_number(lid
 
 @pytest.mark.parametrize("words, reason", (
     pytest.param("ports", "no USB serial adapter is plugged in", id="without_an_adapter_there_are_no_ports"),
-    pytest.param("scan -p PORT --listen", "has another program or controller started the lidar?", id="a_silent_lidar"),
-    pytest.param("survey -p PORT", "not one byte came", id="a_survey_of_nothing")))
-def test_nothing_is_reported(talker, fails, words, reason):
-    fails(1, reason, *words.replace("PORT", talker(b"")).split())
+    pytest.param("scan -p IDLE --listen", "has another program or controller started the lidar?", id="a_silent_lidar"),
+    pytest.param("survey -p SILENT", "not one byte came", id="a_survey_of_nothing")))
+def test_nothing_is_reported(lidar, talker, fails, words, reason):
+    fails(1, reason, *words.replace("IDLE", lidar().port).replace("SILENT", talker(b"")).split())
 
 
 @pytest.mark.parametrize("port, reason", (
