@@ -17,6 +17,7 @@ static const tmini_xy_t box[] = {{0, -300}, {600, 300}}; /* From straight left t
 static tmini_xy_t memory[8] = {{16000, -16000}}; /* What is around the corners does not count. */
 static tmini_xy_t *const polygon = &memory[1];
 static tmini_field_t field[2];
+static tmini_field_t *one; /* Of these two. */
 static tmini_fields_t fields;
 static tmini_point_t points[20];
 static tmini_scan_t scan;
@@ -24,8 +25,8 @@ static uint32_t now_ms;
 
 static void set_up(const tmini_xy_t *list, size_t count)
 {
-    field[0].corners = list;
-    field[0].corner_count = (uint8_t)count;
+    one->corners = list;
+    one->corner_count = (uint8_t)count;
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_fields_init(&fields));
 }
 
@@ -33,13 +34,14 @@ void setUp(void)
 {
     memset(field, 0, sizeof field);
     fields = (tmini_fields_t){.list = field, .count = 1};
+    one = field;
     now_ms = 1000;
     set_up(box, 2);
 }
 
 static void is(tmini_field_state_t wanted)
 {
-    TEST_ASSERT_EQUAL_INT(wanted, tmini_field_state(&field[0], now_ms));
+    TEST_ASSERT_EQUAL_INT(wanted, tmini_field_state(one, now_ms));
 }
 
 static tmini_point_t point_at(long degrees, uint16_t distance_mm)
@@ -47,16 +49,21 @@ static tmini_point_t point_at(long degrees, uint16_t distance_mm)
     return (tmini_point_t){(uint16_t)((degrees + 360) % 360 * 64), distance_mm, 0, 0};
 }
 
-/* A scan of points ahead, 100 ms later: `inside` are in the field, `unseen` have no range, and the
- * others, of 20, are beyond it. */
-static void see(size_t inside, size_t unseen, bool complete)
+/* A scan of the first points, 100 ms later. */
+static void step(uint16_t count, bool complete)
 {
     now_ms += 100;
-    scan = (tmini_scan_t){.points = points, .count = 20, .complete = complete, .end_ms = now_ms};
+    scan = (tmini_scan_t){.points = points, .count = count, .complete = complete, .end_ms = now_ms};
+    tmini_fields_step(&fields, &scan);
+}
+
+/* Of 20 points ahead, `inside` are in the field, `unseen` have no range, others are beyond it. */
+static void see(size_t inside, size_t unseen, bool complete)
+{
     for (size_t i = 0; i < 20; i++) {
         points[i] = point_at((long)i * 2, i < inside ? 400 : i < inside + unseen ? 0 : 3000);
     }
-    tmini_fields_step(&fields, &scan);
+    step(20, complete);
 }
 
 static void see_free(size_t times)
@@ -76,8 +83,10 @@ static void see_free(size_t times)
  *     part:2          the same, but the scan is incomplete
  *     back            a complete scan of a point straight back
  *     +301 clock:-250 this time passes; the clock is set
+ *     clear           forgets what was seen
+ *     fields:2 two one        the list's length; what follows is about the second field, the first
  *     points:5 scans:1 unseen:10 age:50       the user's figures
- *     box             sets the field up: the box above
+ *     box new         sets the fields up, this one as the box above; does not set it up
  *     corners:0,-300,600,300  sets it up with these corners: x, y
  *     no:0,0,0,300    it is refused with these corners, and stays blind
  *     lidar:300,100   where the lidar is, before that
@@ -105,8 +114,8 @@ static size_t read_corners(const char *text)
 
 static void refuse(size_t count)
 {
-    field[0].corners = polygon;
-    field[0].corner_count = (uint8_t)count;
+    one->corners = polygon;
+    one->corner_count = (uint8_t)count;
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_fields_init(&fields));
     see_free(4);
     is(TMINI_FIELD_BLIND);
@@ -124,42 +133,36 @@ static void expect_places(const char *word)
     }
 }
 
-static void see_back(void)
-{
-    now_ms += 100;
-    points[0] = point_at(180, 3000);
-    scan = (tmini_scan_t){.points = points, .count = 1, .complete = true, .end_ms = now_ms};
-    tmini_fields_step(&fields, &scan);
-}
-
 static void tell_word(char *word)
 {
     const char *text = row_text(word);
-    const uint8_t number = (uint8_t)row_number(word);
-    if (row_is(word, "FREE")) {
-        is(TMINI_FIELD_FREE);
-    } else if (row_is(word, "OCCUPIED")) {
-        is(TMINI_FIELD_OCCUPIED);
-    } else if (row_is(word, "BLIND")) {
-        is(TMINI_FIELD_BLIND);
+    const uint32_t number = row_number(word);
+    const row_member_t members[] = {
+        {"fields", MEMBER(fields.count)}, {"points", MEMBER(one->points)},
+        {"scans", MEMBER(one->scans)},    {"unseen", MEMBER(one->unseen_percent)},
+        {"age", MEMBER(one->max_age_ms)}, {"clock", MEMBER(now_ms)},
+    };
+    if (row_stores(word, members)) {
+        return;
+    } else if (row_is(word, "one") || row_is(word, "two")) {
+        one = &field[word[0] == 't'];
+    } else if (strchr("FOB", word[0]) != NULL) {
+        is(word[0] == 'F'   ? TMINI_FIELD_FREE
+           : word[0] == 'O' ? TMINI_FIELD_OCCUPIED
+                            : TMINI_FIELD_BLIND);
     } else if (row_is(word, "free")) {
         see_free(number);
     } else if (row_is(word, "see") || row_is(word, "part")) {
         see(number, row_number(text), word[0] == 's');
     } else if (row_is(word, "back")) {
-        see_back();
+        points[0] = point_at(180, 3000);
+        step(1, true);
     } else if (word[0] == '+') {
         now_ms += (uint32_t)strtol(word + 1, NULL, 10);
-    } else if (row_is(word, "clock")) {
-        now_ms = (uint32_t)strtol(text, NULL, 10);
-    } else if (row_is(word, "points")) {
-        field[0].points = number;
-    } else if (row_is(word, "scans")) {
-        field[0].scans = number;
-    } else if (row_is(word, "unseen")) {
-        field[0].unseen_percent = number;
-    } else if (row_is(word, "age")) {
-        field[0].max_age_ms = number;
+    } else if (row_is(word, "clear")) {
+        tmini_fields_clear(&fields);
+    } else if (row_is(word, "new")) {
+        *one = (tmini_field_t){.corners = box, .corner_count = 2};
     } else if (row_is(word, "box")) {
         set_up(box, 2);
     } else if (row_is(word, "lidar")) {
@@ -216,6 +219,11 @@ static const row_t rows[] IN_FLASH = {
         "unseen:101 "
         "no:0,-300,600,300 unseen:100 corners:0,-300,600,300"),
     ROW(fields_set_up_again_are_blind, "free:3 box BLIND free:2 BLIND free:1 FREE"),
+    ROW(fields_that_were_not_set_up_stay_blind, "new free:4 BLIND"),
+    ROW(each_field_is_judged_for_itself_and_set_back_with_its_list,
+        "fields:2 two scans:1 corners:-10,-300,-600,300 see:2 BLIND one OCCUPIED back BLIND "
+        "two FREE fields:1 one free:3 FREE clear BLIND two FREE one free:2 BLIND"),
+    ROW(a_bad_field_does_not_keep_the_good_ones_from_working, "fields:2 two box one no: two FREE"),
     /* ---- Places ---- */
     ROW(a_box_reaches_from_corner_to_corner, IN_BOX "corners:600,-300,0,300 " IN_BOX),
     ROW(a_polygon_may_have_a_dent, /* An L around the lidar's left. */
@@ -409,27 +417,6 @@ void test_65536_points_in_a_field_occupy_it(void)
     TEST_ASSERT_EQUAL_UINT16(65535, field[0].inside);
 }
 
-void test_each_field_is_judged_for_itself_and_set_back_with_its_list(void)
-{
-    static const tmini_xy_t behind[] = {{-10, -300}, {-600, 300}};
-    field[1] = (tmini_field_t){.corners = behind, .corner_count = 2, .scans = 1};
-    fields.count = 2;
-    set_up(box, 2);
-    see(2, 0, true);
-    points[19] = point_at(180, 3000);
-    tmini_fields_step(&fields, &scan);
-    is(TMINI_FIELD_OCCUPIED);
-    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
-    fields.count = 1;
-    see_free(3);
-    is(TMINI_FIELD_FREE);
-    tmini_fields_clear(&fields);
-    is(TMINI_FIELD_BLIND);
-    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
-    see_free(2);
-    is(TMINI_FIELD_BLIND);
-}
-
 void test_all_points_of_a_large_scan_count(void)
 {
     static tmini_point_t many[300];
@@ -476,23 +463,5 @@ void test_fields_without_corners_or_a_list_are_refused(void)
     fields = (tmini_fields_t){.list = NULL, .count = 1};
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_fields_init(&fields));
     TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_fields_init(NULL));
-}
-
-void test_a_bad_field_does_not_keep_the_good_ones_from_working(void)
-{
-    field[1] = (tmini_field_t){.corners = box, .corner_count = 2};
-    field[0].corner_count = 0;
-    fields.count = 2;
-    TEST_ASSERT_EQUAL_INT(TMINI_ERROR_ARGUMENT, tmini_fields_init(&fields));
-    see_free(3);
-    is(TMINI_FIELD_BLIND);
-    TEST_ASSERT_EQUAL_INT(TMINI_FIELD_FREE, tmini_field_state(&field[1], now_ms));
-}
-
-void test_fields_that_were_not_set_up_stay_blind(void)
-{
-    field[0] = (tmini_field_t){.corners = box, .corner_count = 2};
-    see_free(4);
-    is(TMINI_FIELD_BLIND);
     tmini_fields_step(NULL, &scan); /* Does nothing. */
 }
