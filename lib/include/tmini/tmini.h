@@ -64,7 +64,7 @@ extern "C" {
 /** The third number. */
 #define TMINI_VERSION_PATCH 0
 /** The whole version as text, including a suffix such as "-rc.1". */
-#define TMINI_VERSION_TEXT "1.0.0-rc.2-dev"
+#define TMINI_VERSION_TEXT "1.0.0-rc.2"
 
 /** The lowest scan frequency that may be set, in 0.01 Hz (section 1). */
 #define TMINI_FREQUENCY_MIN_CHZ 600u
