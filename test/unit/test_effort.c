@@ -52,6 +52,9 @@ static const row_t tales[] IN_FLASH = {
      * bytes are no whole header. */
     ROW(candidates_without_a_packet_are_bounded_too,
         "large 4096( <x:AA55 ) !MORE skipped:188 drain skipped:8184 errors:0"),
+    /* Twelve cost 14 and one skipped byte, 82 as above: 1492. */
+    ROW(no_candidate_follows_when_the_effort_is_exactly_used_up,
+        "large 12( <x:AA ) 2000( <x:AA55 ) !MORE skipped:176 drain"),
     /* 99 candidates cost 14 and one skipped byte each. For the last one and the garbage after it,
      * 7 of 1492 are left. */
     ROW(garbage_after_candidates_is_bounded_with_them,
