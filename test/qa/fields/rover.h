@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* One robot on the bed (test/system/bed.h), with fields, in a hall of 8 m by 8 m. Some points may be
- * random, as in dust or beside other lidars. */
+/* One robot on the bed (test/system/bed.h), with fields, in a hall of 8 m by 8 m. Some points may
+ * be random, as in dust or beside other lidars. */
 
 #ifndef ROVER_H
 #define ROVER_H

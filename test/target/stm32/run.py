@@ -211,8 +211,8 @@ Piece = collections.namedtuple("Piece", "end is_whole points crc")
 
 
 def pieces_from(packets, first):
-    """What a scan may be that begins with packets[first]: it ends before the next start packet, or where bytes were lost.
-    LastCRC, a byte, may precede a start packet."""
+    """What a scan may be that begins with packets[first]: it ends before the next start packet, or where bytes were
+    lost. LastCRC, a byte, may precede a start packet."""
     for end in range(first + 1, len(packets) + 1):
         starts, gap = (packets[end].starts, packets[end].gap) if end < len(packets) else (0, 1)
         if starts or gap:
