@@ -62,8 +62,9 @@ static const row_t tales[] IN_FLASH = {
     ROW(while_the_program_is_behind_scans_of_two_packets_that_a_doubt_ends_are_withheld,
         "pause:30 scans <S <S <P !SCAN ~160 <S !NONE scans:1 withheld:6 / pause:30 scans <S <P "
         "held:5 !SCAN !NONE ~160 <S !NONE withheld:5 / pause:30 scans <small:700 held:5 !SCAN "
-        "!NONE "
-        "~160 <S !SCAN withheld:0"),
+        "!NONE ~160 <S !SCAN withheld:0"),
+    ROW(else_a_scan_of_one_packet_that_a_doubt_ends_is_delivered,
+        "pause:30 scans <S !SCAN !NONE ~160 <S !SCAN count:1 withheld:0"),
     ROW(a_packet_that_comes_in_time_has_a_gap_of_the_bytes_before_it,
         GARBAGE "83( ~1 <x:00 !NONE ) ~1 <P drain gap:83"),
     ROW(a_packet_that_comes_too_late_has_an_unknown_gap_though_the_line_was_never_silent,
