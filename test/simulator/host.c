@@ -187,3 +187,9 @@ void host_write(host_t *host, const uint8_t *bytes, size_t count)
         send_pending(host);
     }
 }
+
+void host_close(host_t *host)
+{
+    (void)close(host->fd);
+    host->fd = -1;
+}

@@ -43,4 +43,7 @@ size_t host_read(host_t *host, uint8_t *bytes, size_t max);
 /* Sends without waiting: now, or later when the client can take it. */
 void host_write(host_t *host, const uint8_t *bytes, size_t count);
 
+/* Shows the client at once that nothing more comes. */
+void host_close(host_t *host);
+
 #endif

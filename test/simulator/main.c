@@ -221,6 +221,7 @@ static bool run(const options_t *options, uint64_t *now_us)
     printf("%s\n", host.address);
     fflush(stdout);
     *now_us = serve(options);
+    host_close(&host);
     return true;
 }
 
