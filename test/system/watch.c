@@ -191,7 +191,7 @@ static void look_for_packet(void *context, const reference_item_t *item)
 }
 
 /* It may have begun inside another packet that was valid by chance: then nobody finds it. */
-static void complain_if_found(bed_t *bed, const watch_packet_t *packet)
+static bool can_be_found(const bed_t *bed, const watch_packet_t *packet)
 {
     static const reference_options_t options = {.max_samples = 80};
     static uint8_t bytes[WATCH_HISTORY];
@@ -199,7 +199,12 @@ static void complain_if_found(bed_t *bed, const watch_packet_t *packet)
     search_t search = {(size_t)(packet->offset - (bed->watch->arrived - count)), false};
 
     (void)reference_decode(bytes, count, &options, look_for_packet, &search);
-    if (search.is_found) {
+    return search.is_found;
+}
+
+static void complain_if_found(bed_t *bed, const watch_packet_t *packet)
+{
+    if (can_be_found(bed, packet)) {
         watch_complain(bed, WRONG_LOST_PACKET);
     } else {
         bed->watch->counts.by_chance++;
@@ -501,9 +506,14 @@ watch_end_t watch_end(bed_t *bed)
 
         has_begun |= packet->starts_revolution && !packet->is_lost;
         if (has_begun && !packet->is_lost) {
-            end.intact += packet->samples;
             const uint32_t in_one = sim_judge_in_one(&watch->judge, packet->place, packet->samples);
 
+            if (in_one < packet->samples && counters.points_withheld == 0 &&
+                !can_be_found(bed, packet)) {
+                watch->counts.by_chance++;
+                continue;
+            }
+            end.intact += packet->samples;
             end.in_one += in_one;
             if (in_one < packet->samples) {
                 bed_tell(bed, "not in one scan: packet of turn %u, come at %u ms", packet->turn,
