@@ -242,7 +242,7 @@ void test_a_cloud_has_every_range_where_it_was_measured_and_when(void)
 
 /* "90,4000,40": a point with its angle, distance and intensity; "turn": many; "begins:-3": the
  * first ray. "ray:270=3,30": its range and intensity. To the right is 90 degrees for the lidar, -90
- * for ROS: ray 270. "cloud:2": so many points; "shown:0=3": the intensity of one. */
+ * for ROS: ray 270. "cloud:2": it has two points; "shown:0=3": the intensity of the first. */
 static void tell(char *word)
 {
     const row_member_t members[] = {{"min", MEMBER(config.min_mm)},

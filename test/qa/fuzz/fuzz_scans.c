@@ -78,7 +78,7 @@ static void command(void)
     }
 }
 
-/* All bytes of so many packets are lost, with polls meanwhile or not. */
+/* The next `packets` are lost, with polls meanwhile or not. */
 static void be_silent(unsigned packets, bool polled)
 {
     hole.packets = 1 + packets;
