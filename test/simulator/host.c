@@ -106,8 +106,7 @@ static bool has_gone(const host_t *host)
 static bool update_tcp(host_t *host)
 {
     if (host->fd >= 0 && has_gone(host)) {
-        (void)close(host->fd);
-        host->fd = -1;
+        host_close(host);
         forget_client(host);
     }
     if (host->fd < 0 && (host->fd = accept(host->listener, NULL, NULL)) >= 0) {
