@@ -416,8 +416,15 @@ def main():
     parser.add_argument("--work", type=Path, default=ROOT / "build-mutation", help="the folder of the copy")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--list", action="store_true", help="only prints the mutants")
+    parser.add_argument("--known", action="store_true", help="only looks for what is no longer a mutant")
     parser.add_argument("files", nargs="*", metavar="FILE", default=[ROOT / "lib" / "src"])
     arguments = parser.parse_args()
+    known = known_survivors()
+    stale = outdated(known)
+    for key in stale:
+        print(f"in {KNOWN}, but no longer a mutant: {key}")
+    if arguments.known:
+        sys.exit(1 if stale else 0)
     mutants = [mutant for path in sources_among(arguments.files) for mutant in mutants_of(path)]
     if not mutants:
         parser.error(f"nothing to change in {' '.join(map(str, arguments.files))}")
@@ -426,10 +433,6 @@ def main():
     if arguments.list:
         print(*mutants, f"{len(mutants)} mutants", sep="\n")
         return
-    known = known_survivors()
-    stale = outdated(known)
-    for key in stale:
-        print(f"in {KNOWN}, but no longer a mutant: {key}")
     copy, results = Copy(arguments.work, arguments.jobs, arguments.killers), Results(arguments.results)
     survivors, needed = try_mutants(mutants, arguments.sample or len(mutants), copy, results, known)
     if arguments.killers:
