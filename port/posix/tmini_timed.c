@@ -96,8 +96,8 @@ int64_t tmini_timed_now_us(const tmini_timed_t *timed, int64_t now_us)
     return timed->clock_us > least_us ? timed->clock_us : least_us;
 }
 
-/* A chunk has come, `delta_us` after the one before by the sender's clock. Its delay is at least
- * the smallest so far: if it seems to be less, that is the smallest now. */
+/* A chunk has come, `delta_us` after the one before by the sender's clock. If its delay is smaller
+ * than each so far, it is the smallest from now on. */
 static void settle(tmini_timed_t *timed, uint32_t delta_us, int64_t now_us)
 {
     const int64_t leak_us = (now_us - timed->settled_us) / LEAK;

@@ -84,7 +84,7 @@ void tmini_timed_begin(tmini_timed_t *timed);
  * when tmini_timed_take() has returned 0. */
 uint8_t *tmini_timed_room(tmini_timed_t *timed, size_t *room);
 
-/** `count` bytes were put there. */
+/** `count` bytes were put where tmini_timed_room() said. */
 void tmini_timed_put(tmini_timed_t *timed, size_t count);
 
 /** Returns how many of the lidar's bytes come next, at most `most`, and where they are; all of them

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* What test_decode.py cannot show: packets that come from a driver, and how a recording that is
- * played from memory is taken. */
+/* What test_decode.py cannot show: packets that come from a driver, and how a recording is played
+ * from memory. */
 
 #include "encoder.h"
 #include "rows.h"

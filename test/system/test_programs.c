@@ -764,7 +764,7 @@ void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
 
 /* ---- Silences and pauses of any length: no scan has points of two turns ---- */
 
-/* Meanwhile the lidar turns on: what comes afterwards may seem to continue what came before. */
+/* Meanwhile the lidar goes on turning: what follows may seem to continue what came before. */
 void test_a_silence_of_any_length_mixes_no_turns(void)
 {
     for (uint32_t ct = 0; ct <= 1; ct++) {

@@ -10,7 +10,8 @@
 
 #define ONE_DEGREE_Q6 64u
 
-/* This near to straight ahead is ahead: so angle_min is the same each day. */
+/* An angle this near to straight ahead counts as ahead, so that each start has the same
+ * angle_min. */
 #define AHEAD_Q6 (2u * ONE_DEGREE_Q6)
 
 const tmini_laser_config_t tmini_laser_default = {
