@@ -181,7 +181,7 @@ static void fail_attempt(tmini_t *lidar, int result)
     tmini_recovery_back_off(lidar, result);
 }
 
-/* The event is not raised if no frequency is wanted and nobody has asked. */
+/* The event is not raised if no frequency is wanted and the program has not asked. */
 TMINI_NOINLINE static void end_frequency(tmini_t *lidar, int result)
 {
     const bool is_wanted = lidar->command.wanted_chz != 0;

@@ -211,7 +211,7 @@ def place_of(path):
 # ---- Trying them ----
 
 def run(*words, folder=None, seconds=1800):
-    """Exit status and output. What it has started is ended with it, or after so many seconds."""
+    """Exit status and output. What it has started is ended with it, or after `seconds`."""
     def limit():
         os.setpgrp()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

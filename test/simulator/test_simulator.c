@@ -513,7 +513,7 @@ static void send_raw(const char *hex)
  * next bytes, which come within 10 ms; "end": no more come; "got:600": the reply that a frequency
  * is set; "forget": what came before no longer counts; "@idle": the mode; "at:64:2300": angle and
  * range; "ct:3:40": the CT byte of a packet in a turn; "spoil:command:late700", "befalls:no-scans":
- * trouble; "fails": power is lost so many microseconds later, and the wire does not know;
+ * trouble; "fails": power is lost N microseconds later, and the wire does not notice;
  * "force:stall:100": a fault of the wire; "calm"; "truth": what it has reported about each packet
  * is true; "keep": a new lidar, whose stream must become the "same"; "by:7": it is taken at once,
  * in portions of 7; settings and facts above. */

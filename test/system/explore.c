@@ -186,7 +186,7 @@ typedef struct {
 } trail_t;
 
 static trail_t trails[DEPTH_MAX];
-static uint32_t every; /* Of the last troubles, one in so many is played. */
+static uint32_t every; /* Of the last troubles, one in this many is played. */
 static uint64_t last_troubles;
 static uint64_t runs;
 static uint64_t failures;

@@ -69,7 +69,7 @@ static void look_after(uint32_t passed_ms, size_t count)
  *     no-doubt        earlier doubts are forgotten
  *     unsettled settled       whether all that came is handled before each look
  *     ring:65536 limit:0      the ring's size; max_pause_ms
- *     held-to:100 held:100    the port holds bytes up to this place; as many
+ *     held-to:100 held:100    the port holds bytes up to this place; this many
  *     arrive:100      100 bytes beyond those fed have arrived before
  *     read:100        bytes up to this place have been read
  *     gap             closes the ring

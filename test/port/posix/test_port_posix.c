@@ -43,7 +43,7 @@ static uint64_t begun_us; /* When the last call began. */
 
 static uint64_t now_us;
 static int poll_error;    /* poll() fails with it, */
-static int poll_fails_ms; /* after so many milliseconds. */
+static int poll_fails_ms; /* after this time. */
 
 static sim_t unit;      /* The simulated lidar, */
 static int its_end;     /* its end of the line (-1: it is unplugged), */
@@ -600,7 +600,7 @@ static const row_t rows[] = {
     /* The reply: 7 + 20 bytes. */
     ROW(a_tap_gets_every_byte, "begin tap:1 info tapped:27 received:27 tap:0 info tapped:27"),
     ROW(a_line_without_counters_has_no_errors, "begin errors:0"),
-    /* With a lidar as many as it has room for, without one in blocks. */
+    /* With a lidar, as many as it has room for; without one, in blocks. */
     ROW(bytes_that_have_waited_are_handed_over_at_once,
         "blocks:300 hangup wait:1000 received:128 ms:0 wait:1000 received:256 ms:0 wait:1000 "
         "received:300 ms:0 pair:700 hangup wait:1000 received:700 ms:0"),
