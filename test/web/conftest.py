@@ -197,7 +197,7 @@ class Page(webdriver.Chrome):
 
             element: text       contained in the element's text        element = text      all of it
             shown element       not shown element                      3 scans             that many more revolutions
-            500 coloured        at least that many pixels of points      0 coloured          none
+            500 coloured        at least that many pixels of points    0 coloured          none
 
         `bench.…` and `return …` run in the page, and `type text into element` replaces the text of a field."""
         for step in re.split(r";\s+", story.strip()):
