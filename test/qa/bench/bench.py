@@ -3,10 +3,11 @@
 
 """Measures what the library costs, and checks the budgets.
 
-    bench.py FOLDER [--update]
+    bench.py FOLDER [--update | --current]
 
-Writes figures and programs to FOLDER; --update rewrites the documents' tables. Exit status: 0 within the
-budgets, 1 if one is exceeded or something failed. Usually called by run.sh, which finds the tools.
+Writes figures and programs to FOLDER; --update rewrites the documents' tables, --current fails if they have other
+figures. Exit status: 0 within the budgets, 1 if one is exceeded or something failed. Usually called by run.sh, which
+finds the tools.
 """
 
 import concurrent.futures
@@ -177,13 +178,15 @@ def same_tools(figures):
     return committed == tables.versions(figures)
 
 
-def update_documents(figures):
+def outdated_documents(figures):
+    """Yields the documents whose tables have other figures, with the text that they should have."""
     for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), (README, README_TABLES)):
         absent = [name for name in names if tables.block_in(document.read_text(), name) is None]
         if absent:
             raise BenchError(f"{document.name} has no markers for: {', '.join(absent)}")
-        document.write_text(tables.renew(document, names, figures))
-        print(f"updated: {document.name}")
+        text = tables.renew(document, names, figures)
+        if text != document.read_text():
+            yield document, text
 
 
 def show(figures):
@@ -199,17 +202,20 @@ def show(figures):
 
 
 def main(words):
-    if len(words) not in (1, 2) or words[1:] not in ([], ["--update"]):
+    if len(words) not in (1, 2) or words[1:] not in ([], ["--update"], ["--current"]):
         print(__doc__)
         return 2
     folder = pathlib.Path(words[0])
     folder.mkdir(parents=True, exist_ok=True)
     figures = measure_all(folder)
     show(figures)
-    within = check_budgets(figures)
-    if words[1:]:
-        update_documents(figures)
-    return 0 if within else 1
+    good = check_budgets(figures)
+    for document, text in outdated_documents(figures) if words[1:] else ():
+        if words[1] == "--update":
+            document.write_text(text)
+        good = good and words[1] == "--update"
+        print(f"{words[1]}: {document.name} had other figures")
+    return 0 if good else 1
 
 
 if __name__ == "__main__":

@@ -5,10 +5,11 @@
 # Measures flash, RAM, stack and instructions of the library, prints the tables, and fails when a
 # budget (budgets.txt) is exceeded:
 #
-#   test/qa/bench/run.sh [--update]
+#   test/qa/bench/run.sh [--update | --current]
 #
-# --update rewrites the tables in docs/footprint.md and README.md. With other compilers than those
-# of these tables, the budgets are a tenth higher. `test/run.sh --all bench` installs the tools.
+# --update rewrites the tables in docs/footprint.md and README.md, --current fails if they have other
+# figures. With other compilers than those of these tables, the budgets are a tenth higher.
+# `test/run.sh --all bench` installs the tools.
 # Exit status: 0 within the budgets, 1 not, 2 wrong usage, 77 a tool is missing.
 
 set -eu
