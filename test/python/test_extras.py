@@ -21,6 +21,8 @@ import tmini
 from conftest import RECORDINGS, SIM
 from lidar_bytes import packet
 from tmini._command import scans_of
+from tmini._laser import Laser
+from tmini._scan import POINT
 
 RECORDING = RECORDINGS / "sim-6hz.bin"
 REMARKS = "no scans from x; waiting for it\nthe lidar is back\n"
@@ -82,6 +84,37 @@ def test_a_recording_becomes_messages_however_the_lidar_is_mounted(run, room, wo
         ray = round(-scan.angles_deg[index] - first) % 360
         assert message.ranges[ray] == pytest.approx(nearest(scan, ray + first), abs=1e-6)
         assert stamp + ray * message.time_increment == pytest.approx(scan.times_s[index], abs=0.003)
+
+
+class Turn:
+    """What a Scan has that a message is made of: 0.05 s of it came, at 100 s."""
+
+    def __init__(self, angles_q6, complete=False, frequency_hz=None):
+        self._points = np.array([(angle_q6, 1000, 9, 0) for angle_q6 in angles_q6], POINT).tobytes()
+        self.complete, self.frequency_hz = complete, frequency_hz
+        self.start_s, self.end_s = 99.95, 100.0
+
+    def __len__(self):
+        return len(self._points) // POINT.itemsize
+
+
+@pytest.mark.parametrize("turn, takes_s, stamp_s", [
+    pytest.param(*row, id=claim) for claim, row in {
+        "a_complete_turn_ends_with_its_scan": (Turn(range(0, 23040, 36), True, 6.0), 0.16, 100),
+        "one_of_unknown_frequency_takes_as_long_as_its_points": (Turn(range(0, 23040, 36), True), 0.16, 100),
+        "one_that_breaks_off_takes_as_long_as_the_lidar_reports": (Turn([0, 36], False, 6.0), 0.167, 100.117),
+    }.items()])
+def test_a_message_knows_the_time_of_its_turn(turn, takes_s, stamp_s):
+    rays = Laser(360, upside_down=False).convert(turn)
+    assert (rays.scan_time, rays.stamp_s) == (pytest.approx(takes_s, abs=1e-6), pytest.approx(stamp_s, abs=1e-6))
+
+
+@pytest.mark.parametrize("upside_down", [False, True], ids=["upright", "upside_down"])
+@pytest.mark.parametrize("angle_q6", [0, 1, 5760, 23039])
+def test_a_message_has_each_point_at_its_angle(angle_q6, upside_down):
+    rays = Laser(360 * 64, upside_down=upside_down).convert(Turn([angle_q6]))
+    (ray,) = np.flatnonzero(np.isfinite(rays.ranges))
+    assert round(math.degrees(rays.angle_min + ray * rays.angle_increment) * 64) % 23040 == -angle_q6 % 23040
 
 
 @pytest.mark.parametrize("rays", [2, 65534])

@@ -43,7 +43,7 @@ class Laser:
     def convert(self, scan: Scan) -> Rays:
         points = np.frombuffer(scan._points, POINT).copy()
         if self._upside_down:  # Back to the lidar's own sense of rotation: the conversion turns it.
-            points["angle_q6"] = (360 * 64 - points["angle_q6"].astype(int)) % (360 * 64)
+            points["angle_q6"] = -points["angle_q6"].astype(int) % (360 * 64)
         memory = ffi.from_buffer("tmini_point_t[]", points)
         native = ffi.new("tmini_scan_t *", {
             "points": memory, "count": len(scan), "complete": scan.complete,
