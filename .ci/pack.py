@@ -29,6 +29,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from archive import Files
@@ -37,8 +38,8 @@ from single import single
 from version import ROOT, address, disagreements, is_placeholder, pep440, version
 
 PAGE = ROOT / "examples/web/tmini.html"
-NOT_OURS = ("build", ".git", ".pio", "managed_components", "__pycache__", "sdkconfig",
-            "dependencies.lock")
+NOT_OURS = ("build", "build-*", ".git", ".pio", "*.egg-info", "managed_components", "__pycache__", "sdkconfig",
+            "sdkconfig.old*", "dependencies.lock")
 
 
 def git(*arguments):
@@ -55,8 +56,7 @@ def project_files():
     if listed:
         return [name for name in listed.split("\0") if name and (ROOT / name).exists()]
     return [path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if path.is_file() and
-            not any(part.startswith("build-") or part in NOT_OURS or part.startswith("sdkconfig.old")
-                    for part in path.relative_to(ROOT).parts)]
+            not any(fnmatchcase(part, pattern) for part in path.relative_to(ROOT).parts for pattern in NOT_OURS)]
 
 
 def date():

@@ -87,6 +87,17 @@ class Rules(unittest.TestCase):
                 for name in files.namelist():
                     self.assertNotIn(b"lidar.example", files.read(name), name)
 
+    def test_in_an_unpacked_archive_what_builds_leave_is_not_packed(self):
+        self.release("--allow-placeholder")
+        before = (self.root.parent / "out/SHA256SUMS").read_text(encoding="utf-8")
+        for left in ("build/bin/tmini", "build-clang/x.o", "port/python/tmini.egg-info/PKG-INFO", ".pio/x.o",
+                     "examples/esp32_idf/sdkconfig.old", "test/host/__pycache__/x.pyc"):
+            path = self.root / left
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+        self.release("--allow-placeholder")
+        self.assertEqual((self.root.parent / "out/SHA256SUMS").read_text(encoding="utf-8"), before)
+
     def test_a_version_in_development_or_with_a_wrong_tag_is_not_released(self):
         self.run_script("version.py", "--write", "2.4.0-dev")
         self.assertRegex(self.release().stderr, "2.4.0-dev is a version in development")
