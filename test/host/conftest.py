@@ -17,7 +17,7 @@ all wait: nothing ever comes late, and a minute of silence costs nothing. So wai
 itself matters, clock.sleep(ms) and clock.now_ms(). Writing and reading must go through clock.wait(), as here.
 
 CMakeLists.txt declares a file with tmini_add_pytest(); by hand: ctest --test-dir build -R host.NAME, or, for one test,
-`build/test/host/pytest test/host/test_NAME.py -k WORDS`.
+`sh build/test/host/pytest test/host/test_NAME.py -k WORDS`.
 """
 
 import contextlib
