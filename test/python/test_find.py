@@ -162,7 +162,8 @@ NOT_ASKED, NO_LIDAR = "sends already, and was not asked", "answers, but not as a
         "who_sends_at_times_is_not_asked": ([(0.1, b"$GPGGA"), (1.1, b"$GPGGA")], [], 0, NOT_ASKED, 0, 1.7),
     }.items()])
 def test_a_line_is_judged_with_care_however_busy_the_computer(
-        monkeypatch, comes, answers, nap_s, said, asked, within_s):
+        monkeypatch, caplog, comes, answers, nap_s, said, asked, within_s):
+    caplog.set_level("INFO", "tmini")
     line = Played(comes() if callable(comes) else comes, answers, nap_s)
     monkeypatch.setattr(tmini._find, "open_line", lambda _: line)
     monkeypatch.setattr(tmini._find, "time", line)
@@ -171,6 +172,7 @@ def test_a_line_is_judged_with_care_however_busy_the_computer(
     else:
         with pytest.raises(OSError, match=f"no lidar whose serial number ends with 2345: x: {said}$"):
             tmini.find("2345", ["x"])
+    assert caplog.messages == [f"looked for a lidar: x: {said}"]
     assert (line.asked, line.now_s < within_s) == (asked, True)
 
 

@@ -14,6 +14,7 @@ import socket
 import struct
 import subprocess
 import time
+from types import SimpleNamespace
 
 import pytest
 
@@ -356,6 +357,30 @@ def test_a_slow_listener_loses_all_that_waits_and_is_told_so():
 
     assert asyncio.run(scenario()) == (
         chunk(0, b"first"), chunk(41000, b"") + chunk(0, bytes([32]) * 1000))
+
+
+@pytest.mark.parametrize("waiting, resumes, is_left", [
+    pytest.param(*row, id=claim) for claim, row in {
+        "who_takes_nothing_is_left": ([5, 5], False, True),
+        "who_takes_some_and_then_nothing_is_left": ([5, 4, 4, 4], False, True),
+        "who_has_taken_it_is_not": ([5, 5], True, False),
+    }.items()])
+def test_a_connection_is_watched_while_too_much_waits_for_it(monkeypatch, waiting, resumes, is_left):
+    from tmini._serve import _Guard
+    monkeypatch.setattr("tmini._serve._DEAD_S", 0)
+    left, sizes = [], list(waiting)
+
+    async def scenario():
+        guard = _Guard(SimpleNamespace(pause_writing=lambda: None, resume_writing=lambda: None))
+        guard._transport = SimpleNamespace(get_write_buffer_size=lambda: sizes.pop(0), abort=lambda: left.append(1))
+        guard.pause_writing()
+        if resumes:
+            guard.resume_writing()
+        for _ in range(100):
+            await asyncio.sleep(0)
+
+    asyncio.run(scenario())
+    assert left == ([1] if is_left else [])
 
 
 def test_what_a_timed_stream_lost_is_lost_for_listeners_too(server):
