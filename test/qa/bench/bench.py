@@ -27,7 +27,7 @@ import tables
 from targets import HERE, LEVELS, LIB_SOURCES, ROOT, TARGETS, BenchError, other_compilers, run, target_named
 
 FOOTPRINT = ROOT / "docs" / "footprint.md"
-README = ROOT / "README.md"
+READMES = [ROOT / "README.md", ROOT / "README.zh-CN.md"]
 README_TABLES = ["footprint"]
 FOOTPRINT_TABLES = [name for name in tables.BLOCKS if name not in (*README_TABLES, "budgets")]
 
@@ -180,7 +180,7 @@ def same_tools(figures):
 
 def outdated_documents(figures):
     """Yields the documents whose tables have other figures, with the text that they should have."""
-    for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), (README, README_TABLES)):
+    for document, names in ((FOOTPRINT, FOOTPRINT_TABLES), *((readme, README_TABLES) for readme in READMES)):
         absent = [name for name in names if tables.block_in(document.read_text(), name) is None]
         if absent:
             raise BenchError(f"{document.name} has no markers for: {', '.join(absent)}")

@@ -7,8 +7,8 @@
 #
 #   test/qa/bench/run.sh [--update | --current]
 #
-# --update rewrites the tables in docs/footprint.md and README.md, --current fails if they have other
-# figures. With other compilers than those of these tables, the budgets are a tenth higher.
+# --update rewrites the tables in docs/footprint.md, README.md and its translation, --current fails
+# if they have other figures. With other compilers than theirs, the budgets are a tenth higher.
 # `test/run.sh --all bench` installs the tools.
 # Exit status: 0 within the budgets, 1 not, 2 wrong usage, 77 a tool is missing.
 

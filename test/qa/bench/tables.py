@@ -139,10 +139,17 @@ def block_in(text, name):
     return found[2].strip("\n") if found else None
 
 
+def with_titles_of(old, new):
+    """The new table with the old one's titles of rows, which are in another language."""
+    return "\n".join("|".join(["", before.split("|")[1], *now.split("|")[2:]])
+                     for before, now in zip(old.splitlines(), new.splitlines(), strict=True))
+
+
 def renew(document, names, figures):
     """The document's text with the new figures in its blocks."""
     text = document.read_text()
     for name in names:
         new = BLOCKS[name](figures)
+        new = with_titles_of(block_in(text, name), new) if document.suffixes[:-1] else new
         text = between(name).sub(lambda found, new=new: f"{found[1]}\n{new}\n\n{found[3]}", text)
     return text
