@@ -117,6 +117,9 @@ static const row_t tales[] IN_FLASH = {
         "!NONE " NO_AGE "idle ~250 !NONE " NO_AGE "start >0D <600 >60 <scan <S !STARTED " NO_AGE),
     ROW(the_age_of_the_newest_complete_scan_counts_from_its_end,
         "scans " REST_OF_CIRCLE "~160 <S !SCAN age:0 ~100 age:100 turns:3:60 age:580 ~20 age:600"),
+    /* 1310 bytes that wait in the port came after it: 99 ms. */
+    ROW(a_scan_that_is_delivered_late_is_as_old_as_its_end,
+        "scans " REST_OF_CIRCLE "~160 <S held:1310 !SCAN age:99 ~1 age:100"),
     /* 22 bytes follow its last one, which take 1 ms. At 0 would mean: never. */
     ROW(a_scan_that_ends_at_0_counts_as_ended_at_1,
         "clock:-210 scans " REST_OF_CIRCLE "~160 <S <P !SCAN age:0 ~100 age:99"),
