@@ -100,6 +100,8 @@ def check_members(module, name, body):
 
 
 def check_file(path, module=None):
+    for other in re.findall(r"\btmini_t \*(?:const )?(?!lidar\b)(\w+)", code_of(path)):
+        yield f"{path.name}: a lidar is named lidar, not {other}: else its members would not be found"
     for name, body in functions(code_of(path)):
         where = module or owner_of(name)
         if where is None:
