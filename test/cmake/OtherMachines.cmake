@@ -14,11 +14,7 @@
 # tmini_add_machine(MACHINE TOOLCHAIN BUILD_TYPE PROGRAM …). A program may be a list of alternatives
 # separated by "|". A high COST makes ctest start these long tests first.
 function(tmini_add_machine machine toolchain build_type)
-    tmini_missing_programs(missing ${ARGN})
-    if(missing)
-        tmini_add_skipped_test(${machine} ${machine} "not installed: ${missing}" ALL)
-        return()
-    endif()
+    tmini_need_programs(${machine} ${machine} ${ARGN})
     tmini_add_check(${machine} ${machine} ALL TIMEOUT 1800
         COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test
             ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/${machine}

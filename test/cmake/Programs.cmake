@@ -97,6 +97,16 @@ function(tmini_add_skipped_test name label reason)
         COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
 endfunction()
 
+# If one of the programs is not installed, the test NAME of the long run is skipped, and the calling
+# function or file ends.
+macro(tmini_need_programs name label)
+    tmini_missing_programs(missing ${ARGN})
+    if(missing)
+        tmini_add_skipped_test(${name} ${label} "not installed: ${missing}" ALL)
+        return()
+    endif()
+endmacro()
+
 # Sets the cache variable to a Python that has these modules. `python3` may be one of the user's own
 # without them, beside the system's. If there is none, VARIABLE_MISSING says so.
 function(tmini_find_python variable modules)
