@@ -104,7 +104,7 @@ class Played:
     def __init__(self, comes, answers, nap_s):
         self.coming = list(comes)  # (when, bytes), by time.
         self.answers, self.nap_s = list(answers), nap_s
-        self.now_s, self.asked = 0.0, 0
+        self.now_s, self.asked, self.is_open = 0.0, 0, True
 
     def monotonic(self):
         return self.now_s
@@ -115,6 +115,8 @@ class Played:
     def read(self):
         came = [data for when_s, data in self.coming if when_s <= self.now_s]
         self.coming = self.coming[len(came):]
+        if None in came:
+            raise OSError("unplugged")
         yield from came
 
     def write(self, data):
@@ -123,7 +125,8 @@ class Played:
         self.coming += [(self.now_s + 0.02, answer) for answer in self.answers[:1]]
         del self.answers[:1]
 
-    def close(self): ...
+    def close(self):
+        self.is_open = False
 
 
 @functools.cache
@@ -160,6 +163,7 @@ NOT_ASKED, NO_LIDAR = "sends already, and was not asked", "answers, but not as a
             lambda: scanning(*NO_CT)[:30], [INFORMATION], 0, SERIAL, 1, 1),
         "the_tail_is_no_answer": (lambda: scanning(*NO_CT)[:30], [], 0, "no answer", 3, 4),
         "who_sends_at_times_is_not_asked": ([(0.1, b"$GPGGA"), (1.1, b"$GPGGA")], [], 0, NOT_ASKED, 0, 1.7),
+        "who_is_unplugged_is_named": ([(0.2, None)], [], 0, "unplugged", 0, 1),
     }.items()])
 def test_a_line_is_judged_with_care_however_busy_the_computer(
         monkeypatch, caplog, comes, answers, nap_s, said, asked, within_s):
@@ -173,7 +177,7 @@ def test_a_line_is_judged_with_care_however_busy_the_computer(
         with pytest.raises(OSError, match=f"no lidar whose serial number ends with 2345: x: {said}$"):
             tmini.find("2345", ["x"])
     assert caplog.messages == [f"looked for a lidar: x: {said}"]
-    assert (line.asked, line.now_s < within_s) == (asked, True)
+    assert (line.asked, line.now_s < within_s, line.is_open) == (asked, True, False)
 
 
 def test_the_known_chips_are_those_of_the_tool():

@@ -431,6 +431,12 @@ def test_a_lidar_on_a_socket_that_still_boots_is_waited_for(simulator):
         assert lidar.read(30) is not None
 
 
+def test_a_port_has_the_lidars_baud_rate():
+    _, device = os.openpty()
+    tmini._line.open_line(os.ttyname(device)).close()
+    assert termios.tcgetattr(device)[4:6] == [termios.B230400] * 2
+
+
 def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):
     with pytest.raises(OSError):
         tmini.Lidar(simulator.port)

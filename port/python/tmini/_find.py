@@ -78,7 +78,6 @@ def _look(name: str) -> str:
 
 def _recognise(line: Line) -> str:
     data = heard = _listen(line, _LISTEN_S)
-    packets = 0
     for _ in range(_HEARD_TIMES):
         if not heard:
             break  # Silent, perhaps after the tail of a lidar that was just stopped.
