@@ -4,6 +4,7 @@
 """The Python package, compared with `tmini decode` and used with the simulated lidar."""
 
 import copy
+import inspect
 import json
 import os
 import pickle
@@ -429,6 +430,11 @@ def test_whoever_gets_no_scans_is_told_the_reason_in_the_words_of_the_tool(simul
 def test_a_lidar_on_a_socket_that_still_boots_is_waited_for(simulator):
     with tmini.Lidar("tcp:" + os.readlink(simulator.start("--boot", "2.5", line="--tcp 0"))) as lidar:
         assert lidar.read(30) is not None
+
+
+def test_unless_asked_a_lidar_keeps_the_newest_scan_as_it_sees_it():
+    parameters = inspect.signature(tmini.Lidar).parameters
+    assert [parameters[name].default for name in ("front", "offset_mm", "backlog")] == [0, 0, 1]
 
 
 def test_a_port_has_the_lidars_baud_rate():
