@@ -49,6 +49,25 @@ FASTER = """{
 }
 """
 
+# A canvas draws nothing, and does not complain, at a place that is no number. What is written is kept in `written`.
+STRICT = """{
+    window.written = [];
+    const canvas = CanvasRenderingContext2D.prototype;
+    for (const name of ['moveTo', 'lineTo', 'arc']) {
+        const draw = canvas[name];
+        canvas[name] = function (x, y, ...more) {
+            if (!Number.isFinite(x + y)) { console.error(name, x, y); }
+            draw.call(this, x, y, ...more);
+        };
+    }
+    const { fillText } = canvas;
+    canvas.fillText = function (text, ...place) {
+        written.push(text);
+        fillText.call(this, text, ...place);
+    };
+}
+"""
+
 COLOURED = "Math.max(r, g, b) - Math.min(r, g, b) > 80"  # Neither black, white nor grey: points and marks.
 
 
@@ -266,7 +285,7 @@ def page(browser, settings):
     must have had no reason to complain."""
     browser.resize(*settings.get("size", (1000, 600)))
     browser.prefer(settings.get("colours", "dark"))
-    browser.prepare(FASTER.replace("SPEED", str(settings.get("speed", 10))) + settings.get("before", ""))
+    browser.prepare(FASTER.replace("SPEED", str(settings.get("speed", 10))) + STRICT + settings.get("before", ""))
     if "url" not in settings:
         browser.open()
         browser.wait_text("state", "not connected")

@@ -13,6 +13,7 @@ import threading
 
 import pytest
 from conftest import HERE, PAGE, RECORDINGS, decode, requests, stories
+from lidar_bytes import turn
 
 SIZE_MAX = 150_000
 
@@ -93,9 +94,40 @@ def test_points_are_drawn_where_they_are_and_stay_as_long_as_wanted(simulated):
     simulated.play("2 scans; 0 coloured")
 
 
-def test_flagged_points_are_marked(simulated):
-    simulated.set("persistence", 20)
-    simulated.wait("marks", lambda: simulated.look("r > 240 && g > 80 && g < 110 && b > 60")[0] > 5)
+@pytest.mark.parametrize("nearest_mm, farthest_mm, rings", [
+    (1, 500, "0.1 0.2 0.3 0.4 0.5"), (501, 1000, "0.2 0.4 0.6 0.8 1"), (1001, 1500, "0.5 1 1.5"),
+    (1501, 2000, "0.5 1 1.5 2"), (2001, 2500, "0.5 1 1.5 2 2.5"), (2501, 3000, "1 2 3"), (3001, 4000, "1 2 3 4"),
+    (4001, 5000, "1 2 3 4 5"), (5001, 6000, "1 2 3 4 5 6"), (6001, 8000, "2 4 6 8"),
+    (8001, 12000, "2 4 6 8 10 12"), (12001, 16383, "4 8 12 16")])
+def test_the_range_is_the_shortest_that_holds_the_farthest_point(page, tmp_path, nearest_mm, farthest_mm, rings):
+    for mm in (16383, nearest_mm, farthest_mm):
+        path = tmp_path / f"{mm}.bin"
+        path.write_bytes(turn([(mm, 100, 0)] * 4))
+        page.type("file", path)
+        page.wait_text("source", path.name)
+        page.wait(f"rings at {rings} m", lambda first=mm == 16383: first or [text for text in page.run(
+            "document.querySelector('#range').dispatchEvent(new Event('change')); return written.splice(0)")
+            if re.fullmatch(r"[\d.]+ m", text)] == [f"{metres} m" for metres in rings.split()])
+
+
+def test_beams_leave_no_gap_between_them_in_the_largest_picture(page):
+    page.type("file", RECORDINGS / "sim-6hz.bin")
+    page.play("log: end of the recording")
+    page.run("""const at = document.querySelector('#picture').getBoundingClientRect();
+        document.querySelector('#picture').dispatchEvent(new WheelEvent('wheel', {
+            clientX: at.left + 341, clientY: at.top + 181, deltaY: -9999 }))""")
+    assert page.look("r === 21")[0] > 100000 and page.look("r < 20")[0] < 100  # Beams; the ground between them.
+
+
+@pytest.mark.parametrize("flag, word, colour", [
+    (2, "specular (1)", "r > 240 && g < 100 && b > 160"), (3, "ambient light (1)", "r > 240 && g < 110 && b < 80")])
+def test_a_flagged_point_is_marked_where_it_is(page, tmp_path, flag, word, colour):
+    (tmp_path / "flagged.bin").write_bytes(turn([(900, 0, flag), (700, 0, 0), (800, 0, 0), (600, 0, 0)]))
+    page.type("file", tmp_path / "flagged.bin")
+    page.play("flagged = 1")
+    count, right, ahead = page.look(colour)
+    assert count > 1 and (right, ahead) == (pytest.approx(0, abs=0.02), pytest.approx(0.9, abs=0.02))
+    assert word in page.run("return written")
 
 
 def test_the_picture_is_as_light_as_the_system_or_as_chosen(simulated):
@@ -129,8 +161,8 @@ def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved
     assert simulated.run(touch_action) == "none"
     assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 1.5, abs=0.02)
     before = place(200, 200)
-    touch(simulated, ("down", 1, 200, 200), ("move", 1, 250, 200), ("up", 1, 250, 200))
-    assert place(250, 200) == before
+    touch(simulated, ("down", 1, 200, 200), ("move", 1, 250, 230), ("up", 1, 250, 230))
+    assert place(250, 230) == before
     simulated.click("zoom-whole")
     assert place(275, 100) == above and simulated.run(touch_action) == ""  # A finger scrolls the page.
     touch(simulated, ("down", 1, 200, 200), ("down", 2, 300, 200), ("move", 2, 400, 200))
