@@ -71,6 +71,8 @@ def test_what_turns_with_the_robot_is_masked(calibrate):
 def test_what_does_not_fit_is_refused_with_the_reason_and_asked_again(calibrate, sim, options, answers, reason):
     screen, status = calibrate(sim, options, [*answers, "\x04"])
     assert reason in screen.text, screen.text.strip()
+    asked = re.findall(r"\d of 3", screen.text)
+    assert asked[-1] == asked[-2]
     assert "the questions were not answered: nothing is calibrated" in screen.text
     assert status == 1
 
