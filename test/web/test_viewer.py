@@ -89,7 +89,7 @@ def test_points_are_drawn_where_they_are_and_stay_as_long_as_wanted(simulated):
     assert simulated.look()[1:] == (pytest.approx(0.7, abs=0.04), pytest.approx(0, abs=0.03))
     simulated.play("type 0 into mount-front")
     simulated.set("persistence", 20)
-    simulated.play("persistence-value = 20 revolutions; sector0: 0.6; 2 scans; sim-visitor; sector0: 1.3; 50 coloured")
+    simulated.play("persistence-value = 20 revolutions; sector0: 0.6; 20 scans; sim-visitor; sector0: 1.3; 50 coloured")
     simulated.set("persistence", 1)
     simulated.play("2 scans; 0 coloured")
 
