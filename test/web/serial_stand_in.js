@@ -33,23 +33,19 @@ class Device {
         }
     }
 
-    get #now() {
-        return Math.floor(performance.now());
-    }
-
     #transferred(count) {
         return new Uint8Array(this.#library.memory.buffer, this.#library.transfer(), count);
     }
 
     setPower(on) {
         this.#plugged = on;
-        this.#library?.simulation_power(on ? 1 : 0, this.#now);
+        this.#library?.simulation_power(on, performance.now());
     }
 
     receive(bytes) {
         if (this.#plugged && bench.answers(bytes[1])) {
             this.#transferred(bytes.length).set(bytes);
-            this.#library.simulation_write(bytes.length, this.#now);
+            this.#library.simulation_write(bytes.length, performance.now());
         }
     }
 
@@ -59,7 +55,7 @@ class Device {
         if (bench.line === 'held' || (bench.line === 'late' && this.#turn % 2 === 0)) {
             return new Uint8Array(0);
         }
-        const bytes = this.#transferred(this.#library.simulation_read(this.#now)).slice();
+        const bytes = this.#transferred(this.#library.simulation_read(performance.now())).slice();
         return bench.line === 'garbled' ? bytes.map((byte) => (byte * 7 + 90) & 0x7F) : bytes;
     }
 }
@@ -126,7 +122,6 @@ class StandInPort extends EventTarget {
                     this.#device.receive(bytes);
                 },
                 abort: end,
-                close: end,
             });
         }
         return this.#writable;
@@ -188,12 +183,9 @@ class StandInPort extends EventTarget {
         if (!on) {
             this.#lose();
         }
-        // At the port, and at navigator.serial as if it had bubbled.
         const event = new Event(on ? 'connect' : 'disconnect');
-        this.dispatchEvent(event);
-        const bubbled = new Event(event.type);
-        Object.defineProperty(bubbled, 'target', { value: this });
-        navigator.serial.dispatchEvent(bubbled);
+        Object.defineProperty(event, 'target', { value: this }); // As if it had bubbled from the port.
+        navigator.serial.dispatchEvent(event);
     }
 
     static {

@@ -73,7 +73,7 @@ export class SerialSource {
         this.#reading = this.#read();
     }
 
-    // A port can be closed only after its streams have been released.
+    // A port can be closed only after its streams have ended or been released.
     async #shut() {
         await this.#reader?.cancel().catch(() => {});
         await this.#reading;
@@ -110,7 +110,6 @@ export class SerialSource {
         } catch (error) {
             return error;
         } finally {
-            this.#reader.releaseLock();
             this.#reader = null;
         }
     }
