@@ -35,9 +35,9 @@ def packet(samples, first_q6, last_q6, ct=0):
     return head + struct.pack("<H", checksum(head + b"\0\0" + content)) + content
 
 
-def turn(samples):
+def turn(samples, ct=121):
     """A turn at 6 Hz with samples at 0, 90, 180 and 270 degrees, and the beginning of the next."""
-    start = packet(samples[:1], 0, 0, ct=121)
+    start = packet(samples[:1], 0, 0, ct)
     return start + packet(samples[1:], 90 * 64, 270 * 64) + start
 
 

@@ -17,7 +17,6 @@ import tempfile
 import pytest
 from selenium import webdriver
 from selenium.common.exceptions import TimeoutException, WebDriverException
-from selenium.webdriver import ActionChains
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.wait import WebDriverWait
@@ -49,22 +48,24 @@ FASTER = """{
 }
 """
 
-# A canvas draws nothing, and does not complain, at a place that is no number. What is written is kept in `written`.
+# A canvas draws nothing, and does not complain, at a place that is no number. What the latest painting consists of is
+# kept: in `written` each text, x, y and width; in `lines` the places from and to; in `arcs` what arc() gets.
 STRICT = """{
-    window.written = [];
-    const canvas = CanvasRenderingContext2D.prototype;
-    for (const name of ['moveTo', 'lineTo', 'arc']) {
-        const draw = canvas[name];
-        canvas[name] = function (x, y, ...more) {
-            if (!Number.isFinite(x + y)) { console.error(name, x, y); }
-            draw.call(this, x, y, ...more);
+    let last = [];
+    for (const [name, keep] of Object.entries({
+        setTransform() { [window.written, window.lines, window.arcs] = [[], [], []]; }, // Begins a painting.
+        fillText(...what) { written.push([...what, this.measureText(what[0]).width]); },
+        moveTo(...place) { last = place; },
+        lineTo(...place) { lines.push([...last, ...place]); last = place; },
+        arc(...circle) { arcs.push(circle); },
+    })) {
+        const draw = CanvasRenderingContext2D.prototype[name];
+        CanvasRenderingContext2D.prototype[name] = function (...what) {
+            if (what.some((one) => typeof one !== 'string' && !Number.isFinite(one))) { console.error(name, ...what); }
+            keep.apply(this, what);
+            draw.apply(this, what);
         };
     }
-    const { fillText } = canvas;
-    canvas.fillText = function (text, ...place) {
-        written.push(text);
-        fillText.call(this, text, ...place);
-    };
 }
 """
 
@@ -124,9 +125,6 @@ class Page(webdriver.Chrome):
         """A click by script, not by the mouse: quick, and wherever the element is."""
         self.run("document.getElementById(arguments[0]).click()", name)
 
-    def press_key(self, key):
-        ActionChains(self, duration=0).send_keys(key).perform()
-
     def type(self, name, text):
         """Replaces what is there, if it is text."""
         if name != "file":
@@ -159,9 +157,6 @@ class Page(webdriver.Chrome):
         text = self.text(name)
         return 0 if text == "–" else int(text)
 
-    def is_shown(self, name):
-        return self.run("return document.getElementById(arguments[0]).checkVisibility()", name)
-
     def wait(self, what, condition, seconds=15):
         """Waits until the function `condition` returns a true value, and returns that."""
         return WebDriverWait(self, seconds, 0.02).until(lambda _: condition(), f"in vain waited for: {what}")
@@ -173,16 +168,19 @@ class Page(webdriver.Chrome):
         except TimeoutException as why:
             raise AssertionError(f"{why.msg}; there is: {self.text(name)!r}") from None
 
-    def wait_scans(self, count):
-        """Waits for this many more complete revolutions."""
-        before = self.number("scans")
-        self.wait(f"{count} revolutions", lambda: self.number("scans") >= before + count)
+    def touch(self, *events):
+        """Each event: kind, finger, x and y."""
+        self.run("""const picture = document.querySelector('#picture');
+            picture.setPointerCapture = () => {};
+            const at = picture.getBoundingClientRect();
+            for (const [kind, pointerId, x, y] of arguments[0]) {
+                picture.dispatchEvent(new PointerEvent(`pointer${kind}`, { pointerId,
+                    clientX: at.left + 1 + x, clientY: at.top + 1 + y }));
+            }""", events)
 
     def place_at(self, x, y):
         """What the page shows for this pixel: (metres to the right of the lidar, metres ahead of it)."""
-        self.run("""const at = document.querySelector('#picture').getBoundingClientRect();
-            document.querySelector('#picture').dispatchEvent(new PointerEvent('pointermove', {
-                clientX: at.left + 1 + arguments[0], clientY: at.top + 1 + arguments[1] }))""", x, y)
+        self.touch(("move", 0, x, y))
         distance, angle = self.text("pointer").removesuffix("°").split(" m at ")
         angle = math.radians(float(angle))
         return float(distance) * math.sin(angle), float(distance) * math.cos(angle)
@@ -208,6 +206,11 @@ class Page(webdriver.Chrome):
             })""", condition)
         return count, *(self.place_at(x, y) if count else (0, 0))
 
+    def drawn(self, what):
+        """What is in the picture: `written`, `lines` or `arcs`, see STRICT."""
+        return self.run("""document.querySelector('#range').dispatchEvent(new Event('change'));
+            return new Promise(requestAnimationFrame).then(() => window[arguments[0]])""", what)
+
     # ---- Stories
 
     def play(self, story):
@@ -221,7 +224,7 @@ class Page(webdriver.Chrome):
         `bench.…` and `return …` run in the page, and `type text into element` replaces the text of a field."""
         for step in re.split(r";\s+", story.strip()):
             name, _, rest = step.partition(" ")
-            if step.startswith(("bench.", "return ", "let ")):
+            if step.startswith(("bench.", "return ")):
                 self.run(step)
             elif match := re.fullmatch(r"type (.*) into (\S+)", step):
                 self.type(match[2], match[1])
@@ -231,9 +234,10 @@ class Page(webdriver.Chrome):
                 self.wait(f"{step}; there is: {self.text(name)!r}",
                           lambda at=name, whole=rest[2:]: self.text(at) == whole)
             elif name in ("shown", "not"):
-                self.wait(step, lambda at=step.split()[-1], is_shown=name == "shown": self.is_shown(at) == is_shown)
+                self.wait(step, lambda at=step.split()[-1], is_shown=name == "shown": self.run(
+                    "return document.getElementById(arguments[0]).checkVisibility()", at) == is_shown)
             elif rest == "scans":
-                self.wait_scans(int(name))
+                self.wait(step, lambda least=self.number("scans") + int(name): self.number("scans") >= least)
             elif rest == "coloured":
                 self.wait(step, lambda most=int(name): self.look()[0] > most if most else self.look()[0] == 0)
             else:

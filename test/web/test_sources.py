@@ -9,7 +9,7 @@ import re
 
 import pytest
 from conftest import HERE, RECORDINGS, decode, stories
-from lidar_bytes import timed
+from lidar_bytes import timed, turn
 
 STAND_IN = (HERE / "serial_stand_in.js").read_text(encoding="utf-8")
 START_PACKET = bytes.fromhex("aa5579")  # Its beginning at 6.0 Hz: AA 55 and its CT.
@@ -44,6 +44,8 @@ RECORDED = [
     ("damaged.bin", (RECORDINGS / "sim-6hz-damaged.bin").read_bytes, "shown checksums"),
     ("plain.bin", (RECORDINGS / "sim-10hz-plain.bin").read_bytes,
      "ct-version = not sent by this unit; ct-health = not sent; faults = –"),
+    ("no-frequency.bin", lambda: turn([(900, 100, 0)] * 4, ct=1), "frequency = –; summary: –, 4 points"),
+    ("one-packet.bin", (RECORDINGS / "manual-packet.bin").read_bytes, "problem: 1 packets, but no whole revolution"),
     ("real.bin", real, "500 coloured"),
     ("long.bin", lambda: (RECORDINGS / "sim-6hz-damaged.bin").read_bytes() * 30, "shown checksums"),
     ("ends-with-a-start-packet.bin", lambda: ROOM[:ROOM.rindex(START_PACKET) + 13], "not problem"),
@@ -63,18 +65,11 @@ def test_of_a_recording_is_shown_what_the_tool_decodes(page, tmp_path, name, con
     page.wait_text("source", name)
     saved, table = page.save("save-csv")
     assert re.fullmatch(r"tmini-points-[\d-]+\.csv", saved) and table.decode() == rows
-    page.run("const position = document.querySelector('#position'); position.value = position.max; "
-             "position.dispatchEvent(new Event('input'))")
+    page.set("position", page.run("return document.querySelector('#position').max"))
     page.play(f"packets = {stats['packets']}; bytes = {stats['bytes']}; scans = {stats['start_packets']}; "
               f"checksums = {stats['checksum_errors']}; {then}")
     assert page.number("skipped") + page.number("last-crc-bytes") == stats["bytes_skipped"]
     assert page.run("return document.querySelector('#checksums').className") == "bad" * (stats["checksum_errors"] > 0)
-
-
-def test_a_recording_of_one_packet_has_no_revolution(page):
-    page.type("file", RECORDINGS / "manual-packet.bin")
-    page.wait_text("problem", "1 packets, but no whole revolution")
-    assert page.save("save-csv")[1].decode() == decode(RECORDINGS / "manual-packet.bin")[0]
 
 
 def test_a_file_that_is_no_recording_is_called_so(page, tmp_path):
@@ -121,11 +116,8 @@ def test_a_recording_is_opened_instead_of_a_lidar_and_the_last_of_several_stays(
 
 # ----------------------------------------------------------------------------- a serial port, with the stand-in for it
 
+@pytest.mark.parametrize("settings", [{"before": STAND_IN}], ids=["stand-in"])
 class TestSerial:
-    @pytest.fixture
-    def settings(self):
-        return {"before": STAND_IN}
-
     def test_the_stand_in_has_only_what_web_serial_has(self, page):
         assert page.run("""return [[bench.port, SerialPort], [navigator.serial, Serial]].flatMap(([standIn, real]) =>
             Object.getOwnPropertyNames(Object.getPrototypeOf(standIn)).filter((name) => !(name in real.prototype))
@@ -193,12 +185,9 @@ class TestSerial:
         })()""") == [0xA5, 0x65]
 
 
+@pytest.mark.parametrize("settings", [{"before": STAND_IN, "speed": 1}], ids=["stand-in"])
 class TestSerialInTime:
     """In real time: a scan that takes too long is not complete."""
-
-    @pytest.fixture
-    def settings(self):
-        return {"before": STAND_IN, "speed": 1}
 
     def test_a_page_that_is_busy_for_a_while_loses_nothing(self, page):
         page.play("connect; state: scanning; 2 scans")
@@ -215,14 +204,10 @@ class TestSerialInTime:
         assert page.run("return noted.filter((quality) => quality !== 'complete')") == []
 
 
-class TestWithoutSerial:
-    @pytest.fixture
-    def settings(self):
-        return {"before": "delete Navigator.prototype.serial"}
-
-    def test_a_browser_without_web_serial_is_told_so_and_simulates(self, page):
-        page.play("connect; problem: This browser cannot reach a serial port.; problem: Chrome, Edge or Opera; "
-                  "simulate; state: scanning; not problem")
+@pytest.mark.parametrize("settings", [{"before": "delete Navigator.prototype.serial"}], ids=["none"])
+def test_a_browser_without_web_serial_is_told_so_and_simulates(page):
+    page.play("connect; problem: This browser cannot reach a serial port.; problem: Chrome, Edge or Opera; "
+              "simulate; state: scanning; not problem")
 
 
 def test_a_page_opened_from_a_file_can_use_the_browsers_own_web_serial(page):

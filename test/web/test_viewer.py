@@ -6,6 +6,7 @@ has their words, in Page.play()."""
 
 import functools
 import http.server
+import math
 import os
 import pathlib
 import re
@@ -94,6 +95,7 @@ def test_points_are_drawn_where_they_are_and_stay_as_long_as_wanted(simulated):
     simulated.play("2 scans; 0 coloured")
 
 
+@pytest.mark.parametrize("settings", [{"size": (1000, 568)}], ids=["rings of 28 pixels"])  # The narrowest with labels.
 @pytest.mark.parametrize("nearest_mm, farthest_mm, rings", [
     (1, 500, "0.1 0.2 0.3 0.4 0.5"), (501, 1000, "0.2 0.4 0.6 0.8 1"), (1001, 1500, "0.5 1 1.5"),
     (1501, 2000, "0.5 1 1.5 2"), (2001, 2500, "0.5 1 1.5 2 2.5"), (2501, 3000, "1 2 3"), (3001, 4000, "1 2 3 4"),
@@ -105,9 +107,22 @@ def test_the_range_is_the_shortest_that_holds_the_farthest_point(page, tmp_path,
         path.write_bytes(turn([(mm, 100, 0)] * 4))
         page.type("file", path)
         page.wait_text("source", path.name)
-        page.wait(f"rings at {rings} m", lambda first=mm == 16383: first or [text for text in page.run(
-            "document.querySelector('#range').dispatchEvent(new Event('change')); return written.splice(0)")
+        page.wait(f"rings at {rings} m", lambda first=mm == 16383: first or [text for text, *_ in page.drawn("written")
             if re.fullmatch(r"[\d.]+ m", text)] == [f"{metres} m" for metres in rings.split()])
+
+
+def test_a_picture_without_points_has_rings_the_angles_and_an_arrow_to_the_front(page):
+    assert [round(radius, 1) for x, y, radius, first, last in page.drawn("arcs")
+            if (x, y) == (289, 232) and last - first > 2 * math.pi - 0.01] == [188, 37.6, 75.2, 112.8, 150.4, 8, 2.5]
+
+    def line(angle, near, far):
+        right, ahead = math.sin(math.radians(angle)), math.cos(math.radians(angle))
+        return pytest.approx([289 + near * right, 232 - near * ahead, 289 + far * right, 232 - far * ahead], abs=0.001)
+
+    assert page.drawn("lines") == [
+        *(line(angle, 20, 188) for angle in range(0, 360, 30)),
+        *(line(angle, 188, 192 if angle % 10 else 195) for angle in range(0, 360, 5)),
+        [289, 224, 289, 209], [285, 215, 289, 209], [289, 209, 293, 215]]
 
 
 def test_beams_leave_no_gap_between_them_in_the_largest_picture(page):
@@ -124,10 +139,11 @@ def test_beams_leave_no_gap_between_them_in_the_largest_picture(page):
 def test_a_flagged_point_is_marked_where_it_is(page, tmp_path, flag, word, colour):
     (tmp_path / "flagged.bin").write_bytes(turn([(900, 0, flag), (700, 0, 0), (800, 0, 0), (600, 0, 0)]))
     page.type("file", tmp_path / "flagged.bin")
-    page.play("flagged = 1")
+    page.play("type 0.02 into mount-front; flagged = 1")  # At the last 1/64 degree.
     count, right, ahead = page.look(colour)
     assert count > 1 and (right, ahead) == (pytest.approx(0, abs=0.02), pytest.approx(0.9, abs=0.02))
-    assert word in page.run("return written")
+    assert any(word in text for text, *_ in page.drawn("written"))
+    assert page.look("r === 21")[0] > 20000  # The beams of four points are wide.
 
 
 def test_the_picture_is_as_light_as_the_system_or_as_chosen(simulated):
@@ -137,17 +153,6 @@ def test_the_picture_is_as_light_as_the_system_or_as_chosen(simulated):
         act()
         simulated.wait(f"light: {is_light}", lambda light=is_light: (
             simulated.look("r === 255 && g === 255 && b === 255")[0] > 10000) == light)
-
-
-def touch(page, *events):
-    """Each event: kind, finger, x and y."""
-    page.run("""const picture = document.querySelector('#picture');
-        picture.setPointerCapture = () => {};
-        const at = picture.getBoundingClientRect();
-        for (const [kind, pointerId, x, y] of arguments[0]) {
-            picture.dispatchEvent(new PointerEvent(`pointer${kind}`, { pointerId,
-                clientX: at.left + 1 + x, clientY: at.top + 1 + y }));
-        }""", events)
 
 
 def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved(simulated):
@@ -161,11 +166,11 @@ def test_the_place_under_the_pointer_is_shown_and_the_picture_enlarged_and_moved
     assert simulated.run(touch_action) == "none"
     assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 1.5, abs=0.02)
     before = place(200, 200)
-    touch(simulated, ("down", 1, 200, 200), ("move", 1, 250, 230), ("up", 1, 250, 230))
+    simulated.touch(("down", 1, 200, 200), ("move", 1, 250, 230), ("up", 1, 250, 230))
     assert place(250, 230) == before
     simulated.click("zoom-whole")
     assert place(275, 100) == above and simulated.run(touch_action) == ""  # A finger scrolls the page.
-    touch(simulated, ("down", 1, 200, 200), ("down", 2, 300, 200), ("move", 2, 400, 200))
+    simulated.touch(("down", 1, 200, 200), ("down", 2, 300, 200), ("move", 2, 400, 200))
     assert place(275, 100)[1] - place(275, 300)[1] == pytest.approx((above[1] - below[1]) / 2, abs=0.02)
 
 
@@ -189,7 +194,7 @@ def test_a_mounting_that_is_wrong_is_not_applied(simulated, field, good, wrong):
         simulated.set(f"mount-{field}", text)
         assert simulated.element(f"mount-{field}").get_attribute("aria-invalid") == "true", text
         assert re.match(r"Not applied\. (Degrees, -360|Like this: 170)", simulated.text("mount-wrong"))
-        simulated.wait_scans(1)
+        simulated.play("1 scans")
         assert simulated.text("sector0").startswith("0.6")
     simulated.set(f"mount-{field}", good)
     assert simulated.text("mount-wrong") == ""
@@ -223,7 +228,7 @@ def test_a_recording_is_saved_with_its_times(simulated, tmp_path):
 
 
 def test_the_points_of_the_last_seconds_are_saved(simulated):
-    simulated.wait_scans(3)
+    simulated.play("3 scans")
     points = int(simulated.text("points").split(",")[0])
     simulated.play("start-stop; state: idle")
     rows = [row.split(",") for row in simulated.save("save-csv")[1].decode().splitlines()]
@@ -256,6 +261,19 @@ class TestAppearance:
         assert simulated.look(ground)[0] > 0.5 * simulated.run(
             "const { width, height } = document.querySelector('#picture'); return width * (height - 80)")
         simulated.play("300 coloured")
+
+
+@pytest.mark.parametrize("settings, rows", [
+    ({"size": PHONE}, {-60: 70, -36: 18, -12: 22}), ({}, {-36: 70, -12: 22}), ({"size": (1600, 900)}, {-12: 70})],
+    ids=["phone", "window", "large"])
+def test_the_legend_has_a_row_for_what_fits_each_in_the_middle(simulated, rows):
+    """Of a row: its place above the lower edge, and the width of its first sign."""
+    width, height = (simulated.element("picture").get_property(f"client{side}") for side in ("Width", "Height"))
+    texts = [(y - height, x, x + wide) for text, x, y, wide in simulated.drawn("written") if re.match("[a-z]+ ", text)]
+    assert {y for y, *_ in texts} == set(rows)
+    for row, sign in rows.items():
+        ends = [end for y, *at in texts if y == row for end in at]
+        assert ends[0] - sign + ends[-1] == pytest.approx(width, abs=0.1)
 
 
 def test_points_on_dark_have_the_colours_of_the_tools_pictures():
@@ -297,12 +315,11 @@ def test_each_control_has_a_name_of_its_own_and_the_picture_is_described_in_word
 def test_each_control_is_reached_and_used_by_keyboard(page):
     reached = set()
     for _ in range(40):
-        page.press_key("\ue004")  # Tab.
+        page.switch_to.active_element.send_keys("\ue004")  # Tab.
         reached.add(page.run("return document.activeElement.id"))
     assert reached >= set(page.run("""return [...document.querySelectorAll('button, input, select')]
         .filter((item) => item.checkVisibility() && !item.disabled).map((item) => item.id)"""))
-    page.run("document.querySelector('#simulate').focus()")
-    page.press_key("\ue007")  # Enter.
+    page.element("simulate").send_keys("\ue007")  # Enter.
     page.wait_text("state", "scanning")
     assert page.run("return document.activeElement.tagName") != "BODY"
 
