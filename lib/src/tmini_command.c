@@ -10,7 +10,8 @@
 
 /* No change between 6 and 12 Hz needs more than 14 steps (5 of 1 Hz and 9 of 0.1 Hz). A step in
  * vain counts for 16. So a lidar that obeys none is given up after four, and any change may have
- * three. */
+ * three. A lidar that is to scan gets no more if the wish changes meanwhile: a slider must not hold
+ * up its start. */
 #define STEPS_MAX 64
 #define STEPS_IN_VAIN 15 /* What one counts for beside itself. */
 #define COARSE_STEP_CHZ 100

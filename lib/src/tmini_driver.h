@@ -207,7 +207,12 @@ void tmini_command_end(tmini_t *lidar, int result);
 static inline void tmini_command_want(tmini_t *lidar, uint16_t frequency_chz)
 {
     lidar->command.wanted_chz = frequency_chz;
-    lidar->command.steps = 0; /* Counted for each wish. */
+}
+
+/* Steps are counted anew: of an idle lidar each wish may have as many as it needs. */
+static inline void tmini_command_renew_steps(tmini_t *lidar)
+{
+    lidar->command.steps = 0;
 }
 
 /* The frequency that is set is no longer known. */

@@ -373,14 +373,14 @@ static void ask_all(void)
     (void)call("ask-frequency", 0);
 }
 
-/* Wishes from 6 to 12 Hz, a tenth of a second apart. */
-static void slide(uint32_t wishes)
+/* Wishes from 6 to 12 Hz and back, each by so much farther, so long after the one before. */
+static void slide(uint32_t wishes, uint32_t by_chz, uint32_t each_ms)
 {
     for (uint32_t i = 0; i < wishes; i++) {
-        const uint32_t place = i * 37u % 1200u;
+        const uint32_t place = i * by_chz % 1200u;
 
         (void)call("set", 600u + (place < 600u ? place : 1200u - place));
-        bed_run_ms(&bed, 100);
+        bed_run_ms(&bed, each_ms);
     }
 }
 
@@ -456,7 +456,9 @@ static bool act(const char *word, uint32_t number)
     } else if (strcmp(word, "ask-all") == 0) {
         ask_all();
     } else if (strcmp(word, "slide") == 0) {
-        slide(number);
+        slide(number, 37, 100);
+    } else if (strcmp(word, "slide-fast") == 0) {
+        slide(number, 110, 50);
     } else if (strcmp(word, "run") == 0) {
         bed_run_ms(&bed, number);
     } else if (strcmp(word, "pause") == 0) {
@@ -647,6 +649,9 @@ static const row_t rows[] IN_FLASH = {
         "wants:1000 begin start within:5000 mark flip:200 run:60000 stops:0 lost:0"),
     ROW(a_slider_leaves_scans_and_its_last_wish_is_reached,
         "wants:1000 begin start within:5000 mark slide:88 complete>29 within:15000"),
+    ROW(a_slider_that_rests_once_and_moves_on_leaves_scans_too,
+        "wants:1000 begin start within:5000 slide-fast:20 run:740 mark slide-fast:160 "
+        "complete>29 within:15000"),
     ROW(a_frequency_is_rounded_up_to_the_nearest_step, "set:847 start run:5000 scans:850"),
     ROW(a_frequency_is_rounded_down_to_the_nearest_step, "set:844 start run:5000 scans:840"),
     ROW(questions_are_answered_one_after_the_other,

@@ -348,7 +348,8 @@ tmini_status_t tmini_stop(tmini_t *lidar);
  * A lidar that is not to scan is set as soon as it has carried out what is in progress. A lidar
  * that scans goes on until the wish has not changed for four start packets, so that the call may
  * follow a slider; then it is stopped, set and started again [TMINI_EVENT_PAUSED, then
- * TMINI_EVENT_STARTED].
+ * TMINI_EVENT_STARTED]. This takes about 0.05 s per step of 1 or 0.1 Hz, and is cut short after 64
+ * steps if the wish changes meanwhile.
  * Scanning matters more than the frequency: if it cannot be set, the lidar scans at the old one,
  * and TMINI_EVENT_COMMAND_FAILED comes with TMINI_EVENT_STARTED or TMINI_EVENT_RECOVERED. A lidar
  * that turns at another frequency for three seconds gets TMINI_FAULT_FREQUENCY, and the driver sets
