@@ -423,11 +423,13 @@ static uint32_t arrival_ms(tmini_t *lidar)
 
 /* A program that is behind and gets a scan for each packet in doubt would never catch up. So it
  * gets whole scans or none: a scan of at most two packets that a doubt ends is counted, not
- * delivered. */
+ * delivered, and any incomplete one while the port holds more bytes. */
 static void end_scan(tmini_t *lidar, bool is_doubtful)
 {
     const tmini_scan_t *const scan = &lidar->decoder.builder.scan;
-    if (is_doubtful && scan->packets <= 2 && tmini_line_is_behind(lidar)) {
+    const bool is_remnant =
+        (is_doubtful && scan->packets <= 2) || (!scan->complete && lidar->line.held > 0);
+    if (is_remnant && tmini_line_is_behind(lidar)) {
         lidar->points_withheld += scan->count;
     } else {
         deliver_scan(lidar);

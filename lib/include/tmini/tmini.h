@@ -305,10 +305,10 @@ static inline size_t tmini_feed_position(const tmini_t *lidar);
  * TMINI_EVENT_MORE: call it again when other work allows. For a null pointer it returns
  * TMINI_EVENT_NONE.
  * After the first start packet every intact point is in exactly one scan, except those of a turn
- * that a loss, a stop or a pause cuts off; and with one exception more: while
- * the program is behind (bytes have waited for 150 ms), a scan of at most two packets that ends
- * because packets may be missing is not delivered, and its points count as points_withheld. So the
- * program catches up. */
+ * that a loss, a stop or a pause cuts off; and with one exception more: while the program is behind
+ * (bytes have waited for 150 ms), a scan of at most two packets that ends because packets may be
+ * missing is not delivered, nor an incomplete one while the port holds bytes. Their points count as
+ * points_withheld. So the program catches up. */
 tmini_event_t tmini_poll(tmini_t *lidar);
 
 /** For how long tmini_poll() may be left out if no byte comes meanwhile, in milliseconds: for a
