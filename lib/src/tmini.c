@@ -186,9 +186,6 @@ TMINI_NOINLINE static void end_frequency(tmini_t *lidar, int result)
 {
     const bool is_wanted = lidar->command.wanted_chz != 0;
     const bool is_set = result == TMINI_OK;
-    if (is_set) { /* Otherwise the wish may have changed too often to be reached. */
-        tmini_monitor_forget_wish(&lidar->monitor);
-    }
     tmini_recovery_note_frequency(lidar, is_set || !is_wanted);
     if (tmini_recovery_wishes(lidar, TMINI_EVENT_FREQUENCY) || (is_wanted && is_set)) {
         end_wish(lidar, TMINI_EVENT_FREQUENCY, result);

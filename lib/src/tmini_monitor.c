@@ -65,6 +65,7 @@ void tmini_monitor_forget_frequency(tmini_monitor_t *monitor)
 {
     end_frequency_fault(monitor);
     monitor->off_times = 0;
+    monitor->turns_to_still = 0;
 }
 
 /* Counts consecutive revolutions at another frequency than wanted, or while it is unknown which
