@@ -675,6 +675,9 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_program_with_the_smallest_ring_catches_up_after_a_pause_at_10_hz,
         "wants:1000 holds reports:4095 ring:256 max-pause:250 may-lose:1 begin start within:5000 "
         "works:80 run:3000 mark pause:3000 run:30000 complete>139 small<6"),
+    ROW(a_program_that_never_catches_up_gets_complete_scans_too,
+        "wants:1000 holds reports:4095 max-pause:250 may-lose:1 begin start within:5000 works:300 "
+        "run:3000 mark run:30000 complete>29"),
     /* Each silence puts all bytes of a poll in doubt, so that each packet is a scan of its own.
      * The ring lasts 312 ms. */
     ROW(a_program_that_polls_rarely_gets_every_point,
