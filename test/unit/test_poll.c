@@ -64,7 +64,7 @@ static const row_t tales[] IN_FLASH = {
         "held:5 !SCAN !NONE ~160 <S !NONE withheld:5 / pause:30 scans <small:700 held:5 !SCAN "
         "!NONE ~160 <S !SCAN complete:0 withheld:0"),
     ROW(and_any_incomplete_one_while_the_port_holds_more,
-        "pause:30 scans <S <P <P held:5 !SCAN !NONE ~160 <S held:5 !NONE withheld:9"),
+        "pause:30 scans <S <P <P held:5 !SCAN !NONE ~160 <S held:1 !NONE withheld:9"),
     ROW(else_a_scan_of_one_packet_that_a_doubt_ends_is_delivered,
         "pause:30 scans <S !SCAN !NONE ~160 <S !SCAN count:1 withheld:0"),
     ROW(a_packet_that_comes_in_time_has_a_gap_of_the_bytes_before_it,

@@ -159,8 +159,8 @@ static const row_t tales[] IN_FLASH = {
         ">0B <700 +50 >0B <800 +50 >0D <800 !FREQUENCY >60 <scan <S !STARTED "
         "turns:9:80"),
     ROW(the_steps_of_a_lidar_that_is_not_to_scan_are_counted_for_each_wish,
-        "idle set:800 >0D <600 +50 40( >0B <700 set:600 +50 >0C <600 set:800 +50 ) >0B <700 +50 "
-        ">0B <800 +50 >0D <800 !FREQUENCY"),
+        "idle set:700 >0D <600 +50 >0B <650 set:800 +50 31( >0B <700 +50 >0B <600 +50 ) >0B <800 "
+        "+50 >0D <800 !FREQUENCY"),
     ROW(a_wish_that_is_taken_back_pauses_nothing,
         "scans-at-10 turns:5:100 set:900 turns:2:100 set:1000 turns:9:100"),
     ROW(the_same_wish_disturbs_no_scan, "scans-at-10 turns:3:100 set:1000 turns:9:100"),
