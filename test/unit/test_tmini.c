@@ -171,7 +171,6 @@ void test_a_lidar_never_set_up_counts_bytes_as_refused_and_has_empty_results(voi
     size_t size = 1;
     tmini_counters_t seen;
     tmini_ct_info_t turn;
-
     untouched = (tmini_t){0};
     tmini_feed_byte(&untouched, 0xAA);
     tmini_feed(&untouched, bytes, sizeof bytes);
@@ -261,40 +260,42 @@ void test_counters_count_to_the_end_of_their_ranges(void)
 {
     tmini_t *const lidar = &rig.lidar;
     tmini_parser_counters_t *const parser = &lidar->decoder.parser.counters;
-    uint32_t *const wide[] = {&parser->packets,
-                              &parser->checksum_errors,
-                              &parser->bytes_in_packets,
-                              &parser->bytes_in_replies,
-                              &parser->bytes_skipped,
-                              &parser->bytes_overrun,
-                              &lidar->scans,
-                              &lidar->decoder.builder.late_scans};
-    uint16_t *const narrow[] = {&lidar->command.timeouts, &lidar->recovery.losses,
-                                &lidar->recovery.recoveries, &lidar->recovery.restarts,
-                                &lidar->recovery.reboots};
     tmini_counters_t seen;
+    const struct {
+        uint32_t *counter;
+        const uint32_t *seen;
+    } wide[] = {
+        {&parser->packets, &seen.packets},
+        {&parser->checksum_errors, &seen.checksum_errors},
+        {&parser->bytes_in_packets, &seen.bytes_in_packets},
+        {&parser->bytes_in_replies, &seen.bytes_in_replies},
+        {&parser->bytes_skipped, &seen.bytes_skipped},
+        {&parser->bytes_overrun, &seen.bytes_overrun},
+        {&lidar->scans, &seen.scans},
+        {&lidar->decoder.builder.late_scans, &seen.late_scans},
+    };
+    const struct {
+        uint16_t *counter;
+        const uint16_t *seen;
+    } narrow[] = {
+        {&lidar->command.timeouts, &seen.timeouts},
+        {&lidar->recovery.losses, &seen.losses},
+        {&lidar->recovery.recoveries, &seen.recoveries},
+        {&lidar->recovery.restarts, &seen.restarts},
+        {&lidar->recovery.reboots, &seen.reboots},
+    };
     for (unsigned i = 0; i < 8; i++) {
-        *wide[i] = 4294967280u + i;
+        *wide[i].counter = 4294967280u + i;
     }
     for (unsigned i = 0; i < 5; i++) {
-        *narrow[i] = (uint16_t)(65530u + i);
+        *narrow[i].counter = (uint16_t)(65530u + i);
     }
     tmini_counters(lidar, &seen);
-    const uint32_t wide_seen[] = {seen.packets,
-                                  seen.checksum_errors,
-                                  seen.bytes_in_packets,
-                                  seen.bytes_in_replies,
-                                  seen.bytes_skipped,
-                                  seen.bytes_overrun,
-                                  seen.scans,
-                                  seen.late_scans};
-    const uint16_t narrow_seen[] = {seen.timeouts, seen.losses, seen.recoveries, seen.restarts,
-                                    seen.reboots};
     for (unsigned i = 0; i < 8; i++) {
-        TEST_ASSERT_EQUAL_UINT32(4294967280u + i, wide_seen[i]);
+        TEST_ASSERT_EQUAL_UINT32(4294967280u + i, *wide[i].seen);
     }
     for (unsigned i = 0; i < 5; i++) {
-        TEST_ASSERT_EQUAL_UINT16(65530u + i, narrow_seen[i]);
+        TEST_ASSERT_EQUAL_UINT16(65530u + i, *narrow[i].seen);
     }
 }
 
