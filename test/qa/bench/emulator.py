@@ -8,6 +8,7 @@ exact, and is checked against single steps.
 """
 
 import bisect
+import collections
 
 from elftools.elf.elffile import ELFFile
 from unicorn import (UC_ARCH_ARM, UC_ARCH_RISCV, UC_HOOK_BLOCK, UC_HOOK_CODE, UC_MODE_MCLASS,
@@ -25,32 +26,13 @@ CORTEX = {"cortex-m0": arm.UC_CPU_ARM_CORTEX_M0, "cortex-m3": arm.UC_CPU_ARM_COR
           "cortex-m4": arm.UC_CPU_ARM_CORTEX_M4}
 
 
-class ArmRegisters:
-    """Calling convention of Cortex-M."""
-    arguments = (arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2)
-    result = arm.UC_ARM_REG_R0
-    stack = arm.UC_ARM_REG_SP
-    link = arm.UC_ARM_REG_LR
-    thumb = 1
-
-    @staticmethod
-    def wide(low_half):
-        """True for a four-byte instruction."""
-        return low_half >> 11 >= 0x1D
-
-
-class RiscvRegisters:
-    """Calling convention of RISC-V."""
-    arguments = (riscv.UC_RISCV_REG_A0, riscv.UC_RISCV_REG_A1, riscv.UC_RISCV_REG_A2)
-    result = riscv.UC_RISCV_REG_A0
-    stack = riscv.UC_RISCV_REG_SP
-    link = riscv.UC_RISCV_REG_RA
-    thumb = 0
-
-    @staticmethod
-    def wide(low_half):
-        """True for a four-byte instruction."""
-        return low_half & 3 == 3
+# A calling convention. The first argument's register is the result's, too; `wide` is true for the lower half of a
+# four-byte instruction.
+Registers = collections.namedtuple("Registers", "arguments stack link thumb wide")
+ARM = Registers((arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2), arm.UC_ARM_REG_SP, arm.UC_ARM_REG_LR, 1,
+                lambda low_half: low_half >> 11 >= 0x1D)
+RISCV = Registers((riscv.UC_RISCV_REG_A0, riscv.UC_RISCV_REG_A1, riscv.UC_RISCV_REG_A2), riscv.UC_RISCV_REG_SP,
+                  riscv.UC_RISCV_REG_RA, 0, lambda low_half: low_half & 3 == 3)
 
 
 class Machine:
@@ -84,10 +66,10 @@ class Machine:
         if name in CORTEX:
             self.uc = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
             self.uc.ctl_set_cpu_model(CORTEX[name])
-            self.registers = ArmRegisters
+            self.registers = ARM
         else:
             self.uc = Uc(UC_ARCH_RISCV, UC_MODE_RISCV32)
-            self.registers = RiscvRegisters
+            self.registers = RISCV
 
     def _load(self, segments):
         self.uc.mem_map(0x00010000, 0x10000)
@@ -132,7 +114,7 @@ class Machine:
         uc.reg_write(registers.stack, STACK_TOP)
         uc.reg_write(registers.link, RETURN | registers.thumb)
         uc.emu_start(self.addresses[name] | registers.thumb, RETURN)
-        return uc.reg_read(registers.result)
+        return uc.reg_read(registers.arguments[0])
 
     def cost(self, name, *arguments):
         """Calls a function; returns its result and the number of the library's instructions."""

@@ -46,46 +46,25 @@ void bench_fill(void)
     (void)tmini_sectors_init(&sectors, memory, 8, TMINI_FILTER_NONE);
 }
 
-void bench_mount(void)
-{
-    tmini_mount_step(&mount, &scan);
-}
+#define USE(name, call)     \
+    void bench_##name(void) \
+    {                       \
+        (void)(call);       \
+    }
 
-void bench_steps(void)
-{
-    tmini_steps_step(&steps, &scan);
-}
-
-void bench_fields(void)
-{
-    tmini_fields_step(&far_field, &scan);
-}
-
-void bench_fields_near(void)
-{
-    tmini_fields_step(&near_field, &scan);
-}
-
-void bench_isolated(void)
-{
-    tmini_isolated_step(NULL, &scan);
-}
+USE(mount, tmini_mount_step(&mount, &scan))
+USE(steps, tmini_steps_step(&steps, &scan))
+USE(fields, tmini_fields_step(&far_field, &scan))
+USE(fields_near, tmini_fields_step(&near_field, &scan))
+USE(isolated, tmini_isolated_step(NULL, &scan))
+USE(sectors, tmini_sectors_add_scan(&sectors, &scan))
+USE(ranges, tmini_ranges_of_scan(&scan, ranges_mm, NULL, 360))
 
 void bench_cartesian(void)
 {
     for (uint16_t i = 0; i < POINTS; i++) {
         sink = (uint32_t)tmini_cartesian_point(&points[i]).x_mm;
     }
-}
-
-void bench_sectors(void)
-{
-    tmini_sectors_add_scan(&sectors, &scan);
-}
-
-void bench_ranges(void)
-{
-    (void)tmini_ranges_of_scan(&scan, ranges_mm, NULL, 360);
 }
 
 void bench_units(void)
