@@ -74,7 +74,7 @@ void start(void)
     TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_start(&lidar));
 }
 
-static void assert_counted(uint32_t losses)
+void assert_counted(uint32_t losses)
 {
     const port_counts_t counts = port_counted();
     TEST_ASSERT_EQUAL_UINT32(losses, counts.overruns);

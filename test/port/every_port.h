@@ -84,6 +84,9 @@ void begin_way(unsigned number); /* Of port_ways. */
 void start_port(void);
 void start(void);
 
+/* The port has counted this many overruns, and no other errors of the line. */
+void assert_counted(uint32_t losses);
+
 /* Receives what waits; returns the number of packets since the start. */
 uint32_t packets(void);
 
