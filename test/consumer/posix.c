@@ -14,7 +14,6 @@ int main(void)
 {
     const tmini_config_t config = {
         .port = &tmini_posix_port, .port_context = &port, .rx_buffer = rx, .rx_size = sizeof rx};
-
     tmini_posix_init(&port, "/dev/no-lidar-here");
     if (tmini_init(&lidar, &config) != TMINI_OK) {
         return 1;

@@ -259,7 +259,6 @@ static uint64_t delivery_limit(const sim_link_t *link, uint64_t now_us)
 static void begin_stall(sim_link_t *link, uint64_t end_us, uint64_t at_us)
 {
     const uint64_t limit = delivery_limit(link, at_us);
-
     /* `at_us` may lie in the past: bytes delivered since then cannot be held back. */
     link->held_from = limit > link->delivered ? limit : link->delivered;
     link->release_us = end_us;

@@ -192,7 +192,6 @@ const char *sim_lie_name(sim_lie_t lie)
         [SIM_LIE_AGAIN] = "scans with points of an earlier one",
         [SIM_LIE_COMPLETE] = "complete, but something is missing",
         [SIM_LIE_SILENT] = "something missing, but not reported"};
-
     return names[lie];
 }
 

@@ -388,7 +388,6 @@ static void turn_past_packet(sim_t *sim)
     const uint32_t swept = rotor->step * rotor->planned;
     const uint32_t to_start = FULL_TURN_Q16 - rotor->phase;
     const bool passes = swept >= to_start;
-
     rotor->at_start = passes && !rotor->unmarked;
     rotor->unmarked = rotor->unmarked && !passes;
     rotor->phase = passes ? swept - to_start : rotor->phase + swept;

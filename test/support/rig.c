@@ -81,7 +81,6 @@ void rig_feed_byte(uint8_t byte)
 void rig_feed_scan_reply(void)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-
     rig_feed(reply, encode_scan_reply(reply));
 }
 
@@ -90,21 +89,18 @@ void rig_feed_info(void)
     static const encode_information_t information = {
         151, 1, 2, 1, {2, 0, 2, 5, 0, 4, 2, 4, 0, 0, 0, 9, 0, 1, 9, 4}};
     uint8_t reply[ENCODE_REPLY_MAX];
-
     rig_feed(reply, encode_information_reply(reply, &information));
 }
 
 void rig_feed_health(uint8_t status, uint16_t error_code)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-
     rig_feed(reply, encode_health_reply(reply, status, error_code));
 }
 
 void rig_feed_frequency(uint32_t frequency_chz)
 {
     uint8_t reply[ENCODE_REPLY_MAX];
-
     rig_feed(reply, encode_frequency_reply(reply, frequency_chz));
 }
 
@@ -113,7 +109,6 @@ void rig_feed_packet(uint8_t ct, uint8_t lsn, uint16_t distance_mm)
     encode_sample_t samples[40];
     uint8_t bytes[ENCODE_PACKET_HEADER + 40 * ENCODE_SAMPLE_SIZE];
     const encode_packet_t packet = {ct, lsn, 640, (uint16_t)(640 + 32 * (lsn - 1)), samples};
-
     for (unsigned i = 0; i < lsn; i++) {
         samples[i].distance_mm = distance_mm;
         samples[i].intensity = 50;
@@ -143,7 +138,6 @@ void rig_feed_plain_turn(uint16_t distance_mm)
 void rig_feed_turn(uint8_t health, uint16_t distance_mm)
 {
     const encode_turn_t turn = {.frequency_dhz = 60, .user_major = 1, .health = health};
-
     if (rig.in_turn) {
         rig_feed_byte(rig.crc);
     }
@@ -151,7 +145,6 @@ void rig_feed_turn(uint8_t health, uint16_t distance_mm)
     rig.crc = 0;
     for (unsigned index = 0; index < 5; index++) {
         const uint8_t ct = encode_ct(&turn, index);
-
         rig_feed_packet(ct, index == 0 ? 1 : 4, distance_mm);
         rig.crc = encode_crc8(rig.crc, ct);
     }

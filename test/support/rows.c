@@ -33,7 +33,6 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row))
 {
     const char *const name = Unity.CurrentTestName;
     const UNITY_LINE_TYPE line = Unity.CurrentTestLineNumber;
-
     run_row = run;
     for (size_t i = 0; i < count; i++) {
 #ifdef __AVR__
@@ -69,7 +68,6 @@ void row_tell(const char *text, void (*tell)(char *word))
     for (text += strspn(text, " "); *text != '\0' && *text != ')'; text += strspn(text, " ")) {
         const size_t length = strcspn(text, " ");
         char word[ROW_WORD_MAX];
-
         TEST_ASSERT_TRUE(length < sizeof word);
         memcpy(word, text, length);
         word[length] = '\0';
@@ -137,7 +135,6 @@ bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
     const size_t length = strcspn(word, ":<>");
     const uint32_t wanted =
         word[length] != '\0' ? (uint32_t)strtoul(&word[length + 1], NULL, 0) : 0;
-
     while (count > 0 && (strlen(numbers->name) != length || strncmp(numbers->name, word, length))) {
         numbers++;
         count--;

@@ -48,7 +48,6 @@ void test_the_manuals_points_are_those_of_the_manual(void)
                     {9, {22398, 11121, 1, 0}}, /* 22397.5: halves are rounded up. */
                     {13, {22705, 0, 1, 2}},
                     {18, {49, 11135, 1, 2}}};
-
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
         const reference_point_t point = reference_point(manual_packet, expected[i].index);
         TEST_ASSERT_EQUAL_UINT16(expected[i].point.angle_q6, point.angle_q6);

@@ -28,7 +28,6 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
     const size_t most = bed->write_max == 0 || bed->write_max > room ? room : bed->write_max;
     const size_t all = count < most ? count : most;
     const size_t taken = bed->writes_short ? random_below(&bed->random, (uint32_t)all + 1) : all;
-
     for (size_t i = 0; i < taken; i++) {
         bed->outbox[bed->outbox_count++] = bytes[i];
         bed->stop_sent = bed->stop_sent || bytes[i] == STOP;
@@ -40,9 +39,7 @@ static int port_write(void *context, const uint8_t *bytes, size_t count)
 static uint32_t port_now_ms(void *context)
 {
     const bed_t *const bed = context;
-
     const uint64_t us = bed->now_us * (uint64_t)(1000000 + bed->clock_ppm) / 1000000u;
-
     return (uint32_t)(us / 1000u) + bed->clock_ms -
            (bed->now_us >= bed->back_at_us ? bed->back_ms : 0);
 }
@@ -62,7 +59,6 @@ static void hear_command(void *context, uint8_t code, uint64_t now_us)
 {
     bed_t *const bed = context;
     bed_heard_t *const heard = &bed->heard;
-
     bed_tell(bed, "the lidar obeys %02X", code);
     heard->commands++;
     if (code == SIM_COMMAND_START && heard->starts++ == 0) {
@@ -81,7 +77,6 @@ static sim_trouble_t spoil_event(void *context, sim_event_t event, uint64_t now_
     static const char *const texts[] = {"command", "reply", "beginning of a scan", "start packet"};
     bed_t *const bed = context;
     const sim_trouble_t trouble = bed->spoil != NULL ? bed->spoil(bed, ms) : SIM_SOUND;
-
     (void)now_us;
     bed_tell(bed, "%u: %s%s%s", bed->wire_events++, texts[event], trouble != SIM_SOUND ? ": " : "",
              trouble != SIM_SOUND ? sim_trouble_name(trouble) : "");
@@ -92,7 +87,6 @@ bool bed_init(bed_t *bed, const sim_config_t *sim)
 {
     const sim_observer_t observer = {
         .context = bed, .on_command = hear_command, .on_event = spoil_event};
-
     bed->port.write = port_write;
     bed->port.now_ms = port_now_ms;
     bed->config.port = &bed->port;
@@ -129,7 +123,6 @@ bool bed_restart(bed_t *bed)
 sim_config_t bed_quiet_lidar(void)
 {
     sim_config_t config = sim_default_config();
-
     config.noise_mm = 0;
     config.invalid_permille = 0;
     config.flagged_permille = 0;
@@ -146,7 +139,6 @@ uint32_t bed_ms(const bed_t *bed)
 void bed_tell(const bed_t *bed, const char *format, ...)
 {
     va_list arguments;
-
     if (!bed->is_told) {
         return;
     }
@@ -167,7 +159,6 @@ void bed_tell_state(const bed_t *bed)
 unsigned bed_event_named(const char *name)
 {
     unsigned event = 0;
-
     while (event < BED_EVENTS - 1u && strcmp(tmini_event_name((tmini_event_t)event), name) != 0) {
         event++;
     }
@@ -196,7 +187,6 @@ tmini_status_t bed_stop(bed_t *bed)
 tmini_status_t bed_set_frequency(bed_t *bed, uint16_t frequency_chz)
 {
     const tmini_status_t status = tmini_set_frequency(&bed->lidar, frequency_chz);
-
     if (status == TMINI_OK) {
         bed->wants_chz = (uint16_t)((frequency_chz + 5u) / 10u * 10u);
         bed->wished_us = bed->now_us;
@@ -207,7 +197,6 @@ tmini_status_t bed_set_frequency(bed_t *bed, uint16_t frequency_chz)
 tmini_status_t bed_request_info(bed_t *bed)
 {
     const tmini_status_t status = tmini_request_info(&bed->lidar);
-
     if (status == TMINI_OK) {
         bed->asked_us = bed->now_us + 1u;
         bed->wished_us = bed->now_us;
@@ -220,7 +209,6 @@ tmini_status_t bed_request_info(bed_t *bed)
 static void note_scan(bed_t *bed)
 {
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
-
     bed->scan = *scan;
     bed->flows = bed->may_flow;
     bed->small += scan->packets == 1 ? 1u : 0u;
@@ -236,7 +224,6 @@ static void note_scan(bed_t *bed)
 static void note_rate(bed_t *bed)
 {
     uint32_t in_second = 0;
-
     bed->recent_us[bed->recent++ % BED_RECENT] = bed->now_us;
     for (uint32_t i = 0; i < BED_RECENT && i < bed->recent; i++) {
         in_second += bed->now_us - bed->recent_us[i] < 1000000u ? 1u : 0u;
@@ -308,7 +295,6 @@ static void hold(bed_t *bed, const uint8_t *bytes, size_t count)
     const size_t size = held->size > 0 ? held->size : BED_HELD_MAX;
     const size_t room = held->has_overflowed ? 0 : size - held->count;
     const size_t stored = count < room ? count : room;
-
     memcpy(held->bytes + held->count, bytes, stored);
     held->count += stored;
     held->has_overflowed |= stored < count;
@@ -367,7 +353,6 @@ static void write_by_dma(bed_t *bed, uint8_t byte)
 static void feed(bed_t *bed, const uint8_t *bytes, size_t count, uint64_t to)
 {
     const size_t stored = tmini_feed(&bed->lidar, bytes, count);
-
     lose(bed, count - stored, to);
     bed->known += count;
 }
@@ -401,7 +386,6 @@ static void read_held(bed_t *bed)
     bed_held_t *const held = bed->held;
     const size_t room = held->ignores_room ? SIZE_MAX : tmini_feed_room(&bed->lidar);
     const size_t count = held->count < room ? held->count : room;
-
     held->count -= count;
     feed(bed, held->bytes, count, held->to - held->count);
     memmove(held->bytes, held->bytes + count, held->count);
@@ -418,7 +402,6 @@ static void read_held(bed_t *bed)
 static void read_in_time(bed_t *bed)
 {
     bed_held_t *const held = bed->held;
-
     if (held != NULL && held->every_us > 0 && held->due_us <= bed->now_us) {
         read_held(bed);
         held->due_us = bed->now_us +
@@ -434,7 +417,6 @@ static void carry_bytes(bed_t *bed)
 {
     uint8_t bytes[512];
     size_t count;
-
     while ((count = read_line(bed, bytes, sizeof bytes)) > 0) {
         damage(bed, bytes, count);
         receive(bed, bytes, count);
@@ -448,7 +430,6 @@ static void carry_bytes(bed_t *bed)
 static void empty_outbox(bed_t *bed)
 {
     const size_t count = bed->outbox_count;
-
     bed->outbox_count = 0;
     if (count > 0 && bed->watch != NULL) {
         sim_link_write(&bed->watch->link, bed->outbox, count, bed->now_us);
@@ -460,7 +441,6 @@ static void empty_outbox(bed_t *bed)
 void bed_pass_us(bed_t *bed, uint64_t us)
 {
     const uint64_t end_us = bed->now_us + us;
-
     while (bed->now_us < end_us) {
         bed->now_us += end_us - bed->now_us < bed->grain_us ? end_us - bed->now_us : bed->grain_us;
         carry_bytes(bed);
@@ -477,7 +457,6 @@ void bed_stall(bed_t *bed, uint64_t bytes)
 {
     const uint64_t enough = bed->come + bytes;
     const uint64_t end_us = bed->now_us + 3000000u;
-
     bed->is_stalled = true;
     while (bed->come < enough && bed->now_us < end_us) {
         bed_pass_us(bed, BYTE_US);
@@ -499,7 +478,6 @@ static tmini_event_t poll_once(bed_t *bed)
 static void poll(bed_t *bed)
 {
     tmini_event_t event;
-
     bed->wakes++;
     if (bed->watch != NULL) {
         watch_before_polls(bed);
@@ -551,7 +529,6 @@ void bed_step(bed_t *bed)
 void bed_run_ms(bed_t *bed, uint32_t ms)
 {
     const uint64_t end_us = bed->now_us + ms * 1000u;
-
     while (bed->now_us < end_us) {
         bed_step(bed);
     }
@@ -560,7 +537,6 @@ void bed_run_ms(bed_t *bed, uint32_t ms)
 unsigned bed_run_until(bed_t *bed, unsigned events, uint32_t ms)
 {
     const uint64_t end_us = bed->now_us + ms * 1000u;
-
     bed->latest = 0;
     while (bed->now_us < end_us && (bed->latest & events) == 0) {
         bed_step(bed);
@@ -574,7 +550,6 @@ static bool is_row_near(const bed_t *bed, uint16_t frequency_chz, uint32_t scans
 {
     for (uint32_t i = 1; i <= scans; i++) {
         const int off = bed->row_chz[(bed->complete_in_a_row - i) % BED_ROW] - frequency_chz;
-
         if (abs(off) > frequency_chz / 20) {
             return false;
         }
@@ -627,7 +602,6 @@ static const char *shortcoming_of_stop(const bed_t *bed)
 const char *bed_shortcoming(const bed_t *bed)
 {
     const uint64_t sound_us = sim_sound_us(&bed->sim);
-
     if (sound_us != SIM_NEVER && sound_us > bed->now_us) {
         return "in trouble";
     }

@@ -93,7 +93,6 @@ static sim_trouble_t spoil(bed_t *bed, uint32_t *ms)
 static void begin(const story_t *story)
 {
     const sim_config_t config = bed_quiet_lidar();
-
     memset(&run, 0, sizeof run);
     bed_prepare(&run.bed);
     run.bed.poll_ms = POLL_MS;
@@ -123,7 +122,6 @@ static tmini_status_t act(const scene_t *scene)
 static void act_next(void)
 {
     const tmini_status_t status = act(&run.story->scenes[run.scene++]);
-
     if (status != TMINI_OK) {
         printf("a wish was refused: %s\n", tmini_status_name(status));
         exit(2);
@@ -160,7 +158,6 @@ static const char *complaint(void)
     const uint64_t since_us = later(run.bed.wished_us, run.bed.sim.sound_us);
     const bool needs_reboot = sim_sound_us(&run.bed.sim) == SIM_NEVER && run.bed.wants_scans;
     const uint64_t limit_us = needs_reboot ? REBOOT_LIMIT_US : LIMIT_US;
-
     if (bed_misdeed(&run.bed) != NULL) {
         return bed_misdeed(&run.bed);
     }
@@ -213,7 +210,6 @@ static bool may_have_events(void)
 static bool keep_place(trail_t *trail)
 {
     const bool is_kept = trail->count < POINTS_MAX && may_have_events();
-
     if (is_kept) {
         trail->places[trail->count].before = run;
     }
@@ -237,13 +233,10 @@ static void close_place(trail_t *trail, bool is_kept, uint32_t events_before)
 static void play(trail_t *trail)
 {
     const char *what = NULL;
-
     runs++;
     while (!is_fulfilled() && (what = complaint()) == NULL) {
         const uint32_t events_before = run.bed.wire_events;
-
         const bool is_kept = trail != NULL && keep_place(trail);
-
         step();
         if (trail != NULL) {
             close_place(trail, is_kept, events_before);
@@ -291,11 +284,9 @@ static void play_on(trail_t *trail, uint32_t from)
 static void explore(uint32_t depth)
 {
     uint32_t level = 0;
-
     play_on(&trails[0], 0);
     for (;;) {
         trail_t *const trail = &trails[level];
-
         if (!choose_next(trail) && level == 0) {
             return;
         }
@@ -341,7 +332,6 @@ static const story_t *story_named(const char *name)
 static void plan_one(const char *text)
 {
     const char *const colon = strchr(text, ':');
-
     for (size_t i = 0; colon != NULL && i < SPOILS && run.troubles < DEPTH_MAX; i++) {
         if (strcmp(colon + 1, spoils[i]) == 0) {
             run.plan[run.troubles].event = (uint32_t)strtoul(text, NULL, 10);
@@ -384,7 +374,6 @@ int main(int argc, char **argv)
 {
     int first = 1;
     bool is_right = true;
-
     if (argc > first && strcmp(argv[first], "--replay") == 0) {
         return replay(argc - 2, argv + 2);
     }

@@ -41,7 +41,6 @@ static const sim_trouble_t troubles[] = {SIM_LOST,      SIM_LOST,    SIM_LATE,  
 static sim_trouble_t spoil(bed_t *story, uint32_t *ms)
 {
     const sim_trouble_t trouble = troubles[below(TROUBLES)];
-
     (void)story;
     if (spoils_one_in == 0 || below(spoils_one_in) > 0) {
         return SIM_SOUND;
@@ -54,7 +53,6 @@ static void befall(void)
 {
     const sim_trouble_t trouble = troubles[OF_THE_WIRE + below(TROUBLES - OF_THE_WIRE)];
     const uint32_t ms = below(5000);
-
     bed_tell(&bed, "%s, %u ms", sim_trouble_name(trouble), ms);
     sim_befall(&bed.sim, trouble, ms, bed.now_us);
 }
@@ -95,7 +93,6 @@ static void end_trouble(void)
 static void begin(uint32_t seed, bool is_told)
 {
     sim_config_t lidar = bed_quiet_lidar();
-
     random_seed(&dice, seed);
     bed_prepare(&bed);
     bed.is_told = is_told;
@@ -123,7 +120,6 @@ static void act(void)
     static const char *const names[] = {"start", "start",  "start", "stop",   "ask",
                                         "set",   "reboot", "calm",  "trouble"};
     const uint32_t choice = below(9);
-
     bed_tell(&bed, "--- %s", names[choice]);
     switch (choice) {
     case 0:
@@ -157,7 +153,6 @@ static void act(void)
 static bool is_deceived(void)
 {
     const int off_chz = abs(sim_frequency_chz(&bed.sim) - bed.wants_chz);
-
     return bed.event_us[TMINI_EVENT_FREQUENCY] < damaged_until_us &&
            abs(tmini_frequency_chz(&bed.lidar) - bed.wants_chz) <= 5 &&
            off_chz * 20 <= bed.wants_chz;
@@ -167,7 +162,6 @@ static bool is_deceived(void)
 static bool could_not_set(void)
 {
     const uint64_t failed_us = bed.event_us[TMINI_EVENT_COMMAND_FAILED];
-
     return failed_us > 0 && failed_us >= bed.event_us[TMINI_EVENT_STARTED] &&
            failed_us >= bed.event_us[TMINI_EVENT_RECOVERED];
 }
@@ -181,7 +175,6 @@ static bool is_excused(const char *shortcoming)
 static void run_ms(uint32_t ms)
 {
     const uint64_t end_us = bed.now_us + ms * 1000u;
-
     while (bed.now_us < end_us && bed_misdeed(&bed) == NULL) {
         bed_step(&bed);
     }
@@ -222,10 +215,8 @@ int main(int argc, char **argv)
     const uint32_t count = is_told ? 1 : argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 20000;
     const uint32_t first = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
     uint32_t failures = 0;
-
     for (uint32_t seed = first; seed < first + count; seed++) {
         const char *const what = tell(seed, is_told);
-
         if (what != NULL && ++failures <= MOST_FAILURES) {
             printf("stories --tell %u    # %s\n", seed, what);
         }

@@ -29,7 +29,6 @@ static void expect(bool is_true, const char *format, ...)
 {
     char complaint[200];
     va_list arguments;
-
     va_start(arguments, format);
     (void)vsnprintf(complaint, sizeof complaint, format, arguments);
     va_end(arguments);
@@ -39,7 +38,6 @@ static void expect(bool is_true, const char *format, ...)
 static void expect_good_behaviour(uint32_t moment)
 {
     const char *const misdeed = bed_misdeed(&bed);
-
     expect(misdeed == NULL, "at %u: %s", moment, misdeed);
 }
 
@@ -79,7 +77,6 @@ static void start(void)
 static bool run_until_scans(uint32_t most_ms)
 {
     const uint32_t end_ms = bed_ms(&bed) + most_ms;
-
     while (!bed_scans_at(&bed, bed.wants_chz, 3) && bed_ms(&bed) < end_ms) {
         bed_step(&bed);
     }
@@ -90,7 +87,6 @@ static void scans_within(uint32_t most_ms)
 {
     const uint32_t before_ms = bed_ms(&bed);
     const bool is_scanning = run_until_scans(most_ms);
-
     expect(is_scanning, "%u ms after %u: %s", most_ms, before_ms, bed_shortcoming(&bed));
 }
 
@@ -167,7 +163,6 @@ static void supply_fails_for(uint32_t off_ms, uint16_t boot_ms)
 void test_after_any_supply_failure_scans_come_within_4_s_at_10_hz(void)
 {
     static const uint16_t boots_ms[] = {100, 700, 2500};
-
     for (unsigned i = 0; i < 3; i++) {
         for (uint32_t ms = 20; ms <= 60000; ms += ms < 2000 ? 60 : ms / 16) {
             supply_fails_for(ms, boots_ms[i]);
@@ -204,7 +199,6 @@ void test_a_wish_near_the_lidars_own_frequency_survives_a_supply_failure(void)
 static void let_others_start(void)
 {
     static const uint8_t command[] = {0xA5, SIM_COMMAND_START};
-
     sim_receive(&bed.sim, command, sizeof command, bed.now_us);
 }
 
@@ -251,7 +245,6 @@ static void live_a_minute(bool sleeps)
 void test_a_task_that_sleeps_as_long_as_it_may_gets_the_same_events(void)
 {
     static bed_t awake;
-
     live_a_minute(false);
     awake = bed;
     live_a_minute(true);
@@ -341,7 +334,6 @@ static bool befall(const char *word, uint32_t number)
     uint32_t unused;
     const sim_trouble_t trouble = sim_trouble_named(word, &unused);
     const sim_link_kind_t kind = sim_link_kind_named(word);
-
     if (kind != SIM_LINK_KINDS) {
         sim_link_set_mean_gap(&watch.link, kind, number, bed.now_us);
         return true;
@@ -378,7 +370,6 @@ static void slide(uint32_t wishes, uint32_t by_chz, uint32_t each_ms)
 {
     for (uint32_t i = 0; i < wishes; i++) {
         const uint32_t place = i * by_chz % 1200u;
-
         (void)call("set", 600u + (place < 600u ? place : 1200u - place));
         bed_run_ms(&bed, each_ms);
     }
@@ -396,7 +387,6 @@ static void be_silent(uint32_t times)
 static uint32_t events(void)
 {
     uint32_t sum = 0;
-
     for (unsigned event = TMINI_EVENT_NONE + 1; event < BED_EVENTS; event++) {
         sum += bed.events[event];
     }
@@ -417,7 +407,6 @@ static void expect_scans(uint32_t chz)
 {
     const uint32_t complete = bed.complete;
     const uint32_t scans = bed.events[TMINI_EVENT_SCAN];
-
     bed_run_ms(&bed, 3000);
     const uint32_t came = bed.complete - complete;
     expect(came + 1u >= chz * 3u / 100u && came <= chz * 3u / 100u + 1u, "%u complete scans in 3 s",
@@ -483,7 +472,6 @@ static bool act(const char *word, uint32_t number)
 static uint32_t serial_number(void)
 {
     uint32_t value = 0;
-
     for (unsigned i = 8; i < TMINI_SERIAL_DIGITS; i++) {
         value = 10 * value + tmini_info(&bed.lidar)->serial[i];
     }
@@ -493,7 +481,6 @@ static uint32_t serial_number(void)
 static bool judge(const char *word)
 {
     tmini_counters_t counters;
-
     tmini_counters(&bed.lidar, &counters);
     const row_number_t facts[] = {
         {"faults", tmini_faults(&bed.lidar)},
@@ -519,7 +506,6 @@ static bool judge(const char *word)
 static void tell(char *word)
 {
     const uint32_t number = row_number(word);
-
     if (store(word) || judge(word)) {
         return;
     }
@@ -729,7 +715,6 @@ void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
     begin();
     for (unsigned i = 0; i < 61; i++) {
         const uint32_t chz = 600 + 10 * (i * 37 % 61);
-
         (void)call("set", chz);
         expect((bed_run_until(&bed, BIT(TMINI_EVENT_FREQUENCY), 3000) &
                 BIT(TMINI_EVENT_FREQUENCY)) != 0,
@@ -742,7 +727,6 @@ void test_every_frequency_can_be_set_from_where_the_last_one_left_it(void)
 void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
 {
     static const uint32_t delays_ms[] = {40, 100, 1900, 2050, 2500};
-
     for (unsigned i = 0; i < 5 * 6; i++) {
         prepare(0);
         begin();
@@ -761,7 +745,6 @@ void test_a_late_reply_to_any_frequency_step_does_no_harm(void)
 void test_a_late_reply_to_a_command_of_another_program_disturbs_no_answer(void)
 {
     static const uint8_t command[2] = {0xA5, SIM_COMMAND_UNDOCUMENTED_98};
-
     for (uint32_t late_ms = 0; late_ms < 200; late_ms += 9) {
         prepare(0);
         begin();
@@ -840,7 +823,6 @@ static void survive(sim_link_kind_t kind, uint32_t mean_gap, unsigned mode)
 static void survive_in_every_mode(char *word)
 {
     const uint32_t mean_gap = row_number(word);
-
     word[strcspn(word, ":")] = '\0';
     for (unsigned mode = 0; mode < 4; mode++) {
         survive(sim_link_kind_named(word), mean_gap, mode);

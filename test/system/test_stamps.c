@@ -45,7 +45,6 @@ static void see_packet(void *context, const sim_packet_t *packet)
 static void see_command(void *context, uint8_t code, uint64_t now_us)
 {
     const sim_config_t *const lidar = &bed.sim.config;
-
     (void)context;
     if (code == SIM_COMMAND_START) {
         measures_us = now_us + (lidar->reply_latency_ms + lidar->first_packet_ms) * 1000u;
@@ -56,7 +55,6 @@ static void see_command(void *context, uint8_t code, uint64_t now_us)
 static bool loses(void *context, const sim_run_t *run, size_t i)
 {
     static bool is_lost;
-
     (void)context;
     if (run->offset + i == 0) {
         is_lost = run->packet != NULL &&
@@ -70,7 +68,6 @@ static void start(uint16_t frequency_chz)
 {
     static const sim_observer_t observer = {.on_packet = see_packet, .on_command = see_command};
     sim_config_t lidar = bed_quiet_lidar();
-
     lidar.marked = true;
     lidar.frequency_chz = frequency_chz;
     lidar.spin_up_percent = 100;
@@ -96,7 +93,6 @@ static void judge_times(const void *data, tmini_scan_t *scan)
     const uint32_t clock_ms = bed.port.now_ms(&bed) - bed_ms(&bed); /* When the test began. */
     const double start_ms = scan->start_ms - clock_ms;
     sim_reading_t reading = {0};
-
     (void)data;
     for (unsigned i = 0; i < scan->count; i++) {
         judge_point(&judge, &reading, &scan->points[i]);
@@ -139,7 +135,6 @@ static void play_all(bool is_damaged, double latest_ms)
     static const uint32_t polls_ms[] = {1, 10, 38};
     static const uint16_t frequencies_chz[] = {600, 1200};
     static const double most_ms[] = {1.5, 1.0};
-
     for (unsigned i = 0; i < 6; i++) {
         play(frequencies_chz[i % 2], polls_ms[i / 2], is_damaged);
         TEST_ASSERT_TRUE(inside.least >= -most_ms[i % 2] && inside.most <= most_ms[i % 2]);

@@ -22,14 +22,12 @@ const char *watch_name(unsigned wrong)
                                                    [WRONG_REMAINDER] =
                                                        "bytes still pending at the end",
                                                    [WRONG_COST] = "whole turns not complete"};
-
     return wrong < SIM_LIES ? sim_lie_name((sim_lie_t)wrong) : names[wrong];
 }
 
 void watch_complain(bed_t *bed, unsigned wrong)
 {
     watch_t *const watch = bed->watch;
-
     watch->counts.wrongs[wrong]++;
     watch->wrong = watch->wrong != NULL ? watch->wrong : watch_name(wrong);
     bed_tell(bed, "WRONG: %s", watch_name(wrong));
@@ -58,7 +56,6 @@ static void touch(watch_t *watch, uint32_t turn, bool is_start)
 static void note_turn(watch_t *watch, const sim_packet_t *packet, bool is_touched)
 {
     watch_turn_t *const turn = &watch->turns[packet->revolution % WATCH_TURNS];
-
     if (packet->starts_revolution) {
         *turn = (watch_turn_t){0};
     }
@@ -71,11 +68,9 @@ static void note_turn(watch_t *watch, const sim_packet_t *packet, bool is_touche
 void watch_lose(bed_t *bed, uint64_t from, uint64_t to)
 {
     watch_t *const watch = bed->watch;
-
     watch->lost_to = to > watch->lost_to ? to : watch->lost_to;
     for (uint32_t i = 0; i < watch->count; i++) {
         watch_packet_t *const packet = packet_at(watch, i);
-
         if (packet->offset < to && packet->offset + packet->length > from) {
             packet->is_lost = true;
             touch(watch, packet->turn, packet->starts_revolution);
@@ -89,7 +84,6 @@ static void note_packet(void *context, const sim_link_packet_t *packet)
     watch_t *const watch = context;
     const uint32_t place = sim_judge_sent(&watch->judge, &packet->sent);
     const bool is_lost = packet->intact && watch->lost_to > packet->offset;
-
     note_turn(watch, &packet->sent, !packet->intact || is_lost);
     if (!packet->intact) {
         return;
@@ -113,7 +107,6 @@ void watch_begin(bed_t *bed)
     watch_t *const watch = bed->watch;
     const sim_link_observer_t observer = {
         .context = watch, .on_packet = note_packet, .loses = watch->loses};
-
     sim_judge_begin(&watch->judge);
     sim_link_init(&watch->link, &bed->sim, &watch->line);
     sim_link_observe(&watch->link, &observer);
@@ -122,7 +115,6 @@ void watch_begin(bed_t *bed)
 void watch_restart(bed_t *bed)
 {
     watch_t *const watch = bed->watch;
-
     watch->begun_at = watch->arrived;
     watch->known_at_poll = 0;
     watch->silent_since_us = bed->now_us;
@@ -133,7 +125,6 @@ void watch_restart(bed_t *bed)
 void watch_arrive(bed_t *bed, const uint8_t *bytes, size_t count)
 {
     watch_t *const watch = bed->watch;
-
     for (size_t i = 0; i < count; i++) {
         watch->history[watch->arrived++ % WATCH_HISTORY] = bytes[i];
     }
@@ -144,7 +135,6 @@ void watch_arrive(bed_t *bed, const uint8_t *bytes, size_t count)
 static uint64_t parsed(const bed_t *bed)
 {
     tmini_counters_t counters;
-
     tmini_counters(&bed->lidar, &counters);
     return bed->watch->begun_at + counters.bytes_in_packets + counters.bytes_in_replies +
            counters.bytes_skipped;
@@ -157,7 +147,6 @@ static size_t latest_bytes(const watch_t *watch, uint8_t *bytes)
 {
     const size_t count =
         watch->arrived < WATCH_HISTORY ? (size_t)watch->arrived : (size_t)WATCH_HISTORY;
-
     for (size_t i = 0; i < count; i++) {
         bytes[i] = watch->history[(watch->arrived - count + i) % WATCH_HISTORY];
     }
@@ -170,7 +159,6 @@ static void complain_unless_by_chance(bed_t *bed, sim_lie_t lie)
 {
     static uint8_t bytes[WATCH_HISTORY];
     const size_t count = latest_bytes(bed->watch, bytes);
-
     if (bed->watch->counts.wrongs[lie] >= 10 || sim_judge_knows(&bed->watch->judge, bytes, count)) {
         watch_complain(bed, lie);
     } else {
@@ -186,7 +174,6 @@ typedef struct {
 static void look_for_packet(void *context, const reference_item_t *item)
 {
     search_t *const search = context;
-
     search->is_found |= item->is_packet && item->offset == search->offset;
 }
 
@@ -197,7 +184,6 @@ static bool can_be_found(const bed_t *bed, const watch_packet_t *packet)
     static uint8_t bytes[WATCH_HISTORY];
     const size_t count = latest_bytes(bed->watch, bytes);
     search_t search = {(size_t)(packet->offset - (bed->watch->arrived - count)), false};
-
     (void)reference_decode(bytes, count, &options, look_for_packet, &search);
     return search.is_found;
 }
@@ -221,7 +207,6 @@ static bool is_delivered(const watch_t *watch, const watch_packet_t *packet)
 static bool is_due(bed_t *bed, const watch_packet_t *packet)
 {
     watch_t *const watch = bed->watch;
-
     watch->has_begun |= packet->starts_revolution || bed->config.max_points == 0;
     watch->counts.split += packet->is_split ? 1u : 0u;
     return watch->has_begun && !packet->is_split && !packet->is_lost && !watch->may_lose;
@@ -232,11 +217,9 @@ static bool is_due(bed_t *bed, const watch_packet_t *packet)
 static void settle(bed_t *bed, uint64_t end, bool is_judged)
 {
     watch_t *const watch = bed->watch;
-
     while (!watch->is_trial && watch->count > 0 &&
            packet_at(watch, 0)->offset + packet_at(watch, 0)->length <= end) {
         const watch_packet_t *const packet = packet_at(watch, 0);
-
         pop(watch);
         if (is_judged && is_delivered(watch, packet)) {
             watch->has_begun = true;
@@ -269,7 +252,6 @@ static void check_packet(bed_t *bed)
     const tmini_packet_t *const packet = tmini_packet(&bed->lidar);
     sim_reading_t reading = {0};
     tmini_point_t point;
-
     for (unsigned i = 0; i < packet->count && tmini_packet_point(packet, i, &point); i++) {
         judge_point(&bed->watch->judge, &reading, &point);
     }
@@ -281,7 +263,6 @@ static void check_scan(bed_t *bed)
     const tmini_scan_t *const scan = tmini_scan(&bed->lidar);
     const unsigned closing = TMINI_PACKET_SIZE(tmini_packet(&bed->lidar)->count);
     sim_reading_t reading = judge_scan(&bed->watch->judge, scan);
-
     if (bed->watch->on_scan != NULL) {
         bed->watch->on_scan(bed, &reading);
     }
@@ -297,12 +278,10 @@ static void check_faults(bed_t *bed)
     watch_t *const watch = bed->watch;
     const uint8_t faults = tmini_faults(&bed->lidar);
     const uint64_t since_us = bed->now_us - WATCH_FAULT_MS * 1000u;
-
     for (unsigned bit = 0; bit < 8; bit++) {
         const bool now = (faults >> bit & 1u) != 0;
         const bool before = (watch->faults >> bit & 1u) != 0;
         const uint64_t seen_us = now ? watch->fault_on_us[bit] : watch->fault_off_us[bit];
-
         if (now != before && bed->now_us > WATCH_FAULT_MS * 1000u && seen_us < since_us) {
             watch_complain(bed, WRONG_FALSE_FAULT);
         }
@@ -314,7 +293,6 @@ static void check_recovery(bed_t *bed)
 {
     watch_t *const watch = bed->watch;
     const uint64_t taken_us = bed->now_us - watch->trouble_us;
-
     if (!watch->in_trouble) {
         return;
     }
@@ -329,7 +307,6 @@ static void note_faults(bed_t *bed)
 {
     watch_t *const watch = bed->watch;
     uint8_t faults = sim_health(&bed->sim);
-
     /* The library may then report a data fault (section 8), even if the lidar's health does not. */
     if (bed->sim.window_covered || bed->sim.rotor_blocked) {
         faults |= SIM_HEALTH_DATA;
@@ -351,7 +328,6 @@ static void note_trouble(bed_t *bed)
     watch_t *const watch = bed->watch;
     const uint64_t sound_us = sim_sound_us(&bed->sim);
     const bool is_faulty = sim_link_is_faulty(&watch->link) || sound_us == SIM_NEVER;
-
     if (sim_mode(&bed->sim) == SIM_OFF) {
         watch->trouble_us = bed->now_us + bed->sim.config.boot_ms * 1000u;
     } else if (is_faulty && watch->trouble_us < bed->now_us) {
@@ -379,7 +355,6 @@ void watch_step(bed_t *bed)
 bool watch_is_undisturbed_since(const bed_t *bed, uint64_t since_us)
 {
     const watch_t *const watch = bed->watch;
-
     return !sim_link_is_faulty(&watch->link) && watch->trouble_us < since_us &&
            watch->link.last_fault_us < since_us;
 }
@@ -392,14 +367,12 @@ static void note_silence(bed_t *bed)
     watch_t *const watch = bed->watch;
     const uint64_t silence_us = (bed->timing.frame_timeout_ms - 1u) * 1000u;
     const uint64_t end = watch->begun_at + bed->known;
-
     if (bed->known != watch->known_at_poll) {
         watch->known_at_poll = bed->known;
         watch->silent_since_us = bed->now_us;
     } else if (bed->now_us - watch->silent_since_us >= silence_us) {
         for (uint32_t i = 0; i < watch->count; i++) {
             watch_packet_t *const packet = packet_at(watch, i);
-
             packet->is_split |= packet->offset < end && packet->offset + packet->length > end;
         }
     }
@@ -450,7 +423,6 @@ void watch_event(bed_t *bed, tmini_event_t event)
 static void check_bytes(bed_t *bed)
 {
     tmini_counters_t counters;
-
     tmini_counters(&bed->lidar, &counters);
     if (bed->known != bed->known_at_poll) {
         return; /* Some came during the latest poll. */
@@ -467,7 +439,6 @@ void watch_after_polls(bed_t *bed)
 {
     watch_t *const watch = bed->watch;
     const bool is_scanning = tmini_state(&bed->lidar) == TMINI_STATE_SCANNING;
-
     check_bytes(bed);
     if (!is_scanning) {
         forget(bed, parsed(bed));
@@ -490,24 +461,20 @@ watch_end_t watch_end(bed_t *bed)
     watch_end_t end = {0};
     tmini_counters_t counters;
     bool has_begun = false;
-
     tmini_counters(&bed->lidar, &counters);
     if (counters.bytes_pending > 0) {
         watch_complain(bed, WRONG_REMAINDER);
     }
     if (builder->open) {
         sim_reading_t reading = judge_points(&watch->judge, &builder->scan);
-
         reading.lies &= SIM_LIE(SIM_LIE_AGAIN);
         judge_lies(bed, &reading);
     }
     for (uint32_t i = 0; i < watch->count; i++) {
         const watch_packet_t *const packet = packet_at(watch, i);
-
         has_begun |= packet->starts_revolution && !packet->is_lost;
         if (has_begun && !packet->is_lost) {
             const uint32_t in_one = sim_judge_in_one(&watch->judge, packet->place, packet->samples);
-
             if (in_one < packet->samples && counters.points_withheld == 0 &&
                 !can_be_found(bed, packet)) {
                 watch->counts.by_chance++;

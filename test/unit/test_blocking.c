@@ -280,7 +280,6 @@ static void open_with_clock_back(uint32_t ms, int looks)
 void test_a_clock_that_steps_back_ends_no_waiting(void)
 {
     static const uint32_t backs_ms[] = {2, 100, 5000};
-
     for (int i = 0; i < 24; i++) {
         open_with_clock_back(backs_ms[i / 8], 1 + i % 8);
         plan("55:info");

@@ -199,7 +199,6 @@ static void bring_bad_weather(void)
     };
     const bool all = one_in(4);
     const uint32_t only = between(0, SIM_LINK_KINDS - 1);
-
     for (unsigned kind = 0; kind < SIM_LINK_KINDS; kind++) {
         if (all || kind == only || one_in(6)) {
             set_gap((sim_link_kind_t)kind, ranges[kind].low, ranges[kind].high);

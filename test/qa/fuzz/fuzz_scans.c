@@ -43,7 +43,6 @@ static uint8_t take(void)
 static bool lose(void *context, const sim_run_t *run, size_t i)
 {
     const size_t place = run->offset + i;
-
     (void)context;
     hole.packets -= run->packet != NULL && place == 0 && hole.packets > 0 ? 1u : 0u;
     return run->packet != NULL && hole.packets > 0 && place >= hole.from && place < hole.to;
@@ -52,7 +51,6 @@ static bool lose(void *context, const sim_run_t *run, size_t i)
 void interrupt(void)
 {
     static bool is_interrupted;
-
     if (bed.is_polling && !is_interrupted && surprises > 0) {
         surprises--;
         is_interrupted = true;
@@ -68,7 +66,6 @@ static void command(void)
         tmini_reboot,
     };
     const unsigned which = take() % 8u;
-
     if (which == 7) {
         tmini_withdraw(&bed.lidar, (tmini_event_t)(TMINI_EVENT_INFO + take() % 3));
     } else if (which == 6) {
@@ -91,7 +88,6 @@ static void act(void)
 {
     const uint8_t action = take();
     const unsigned detail = action / 8u;
-
     switch (action % 8) {
     case 0:
         bed_run_ms(&bed, 1 + 10 * detail);
@@ -125,7 +121,6 @@ static void act(void)
 static void begin(uint8_t setup)
 {
     sim_config_t lidar = bed_quiet_lidar();
-
     lidar.marked = true;
     lidar.ct_information = (setup & 1) != 0;
     lidar.spin_up_percent = 100;
