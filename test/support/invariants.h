@@ -12,10 +12,6 @@
 
 #include "tmini/tmini.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 bool ring_is_sound(const tmini_ring_t *ring);
 
 /* The parser and its ring. */
@@ -35,9 +31,5 @@ bool lidar_is_sound(const tmini_t *lidar);
 /* The bytes that the parser has counted and those still waiting, modulo 2^32. If every byte is
  * counted once, equal to the bytes stored or refused since init (with DMA: published). */
 uint32_t parser_account(const tmini_parser_t *parser);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

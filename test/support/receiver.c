@@ -20,7 +20,7 @@ tmini_parser_counters_t receiver_counters(const receiver_t *receiver)
     return counters;
 }
 
-static void check_accounts(const receiver_t *receiver)
+void receiver_check_accounts(const receiver_t *receiver)
 {
     const tmini_parser_counters_t counters = receiver_counters(receiver);
     TEST_ASSERT_EQUAL_UINT32(receiver->received,
@@ -96,7 +96,7 @@ tmini_frame_type_t receiver_next(receiver_t *receiver)
     tmini_frame_type_t frame;
     do {
         frame = tmini_parser_next(&receiver->parser);
-        check_accounts(receiver);
+        receiver_check_accounts(receiver);
     } while (frame == TMINI_FRAME_MORE);
     TEST_ASSERT_TRUE(had_work || frame == TMINI_FRAME_NONE);
     TEST_ASSERT_FALSE(frame == TMINI_FRAME_NONE && tmini_parser_has_work(&receiver->parser));
@@ -119,7 +119,7 @@ size_t receiver_frame_offset(const receiver_t *receiver)
 void receiver_abandon(receiver_t *receiver)
 {
     tmini_parser_abandon(&receiver->parser);
-    check_accounts(receiver);
+    receiver_check_accounts(receiver);
 }
 
 tmini_frame_type_t receiver_next_at_end(receiver_t *receiver)
@@ -132,10 +132,13 @@ tmini_frame_type_t receiver_next_at_end(receiver_t *receiver)
     return frame;
 }
 
-void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length)
+void receiver_await(receiver_t *receiver, const reference_reply_t *awaited)
 {
-    const tmini_reply_header_t header = {.type = type, .mode = mode, .length = length};
-    TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver->parser, &header));
+    if (awaited != NULL) {
+        const tmini_reply_header_t header = {awaited->type, awaited->mode,
+                                             (uint8_t)awaited->length};
+        TEST_ASSERT_EQUAL_INT(TMINI_OK, tmini_parser_await(&receiver->parser, &header));
+    }
 }
 
 /* ------------------------------------------------------------- comparison with the reference */
@@ -251,10 +254,7 @@ reference_counts_t receiver_compare(receiver_t *receiver, const receiver_course_
 {
     const reference_options_t options = {receiver->parser.max_samples, course->awaited};
     run_t run = {receiver, course, bytes, size, 0};
-    if (course->awaited != NULL) {
-        receiver_await(receiver, course->awaited->mode, course->awaited->type,
-                       (uint8_t)course->awaited->length);
-    }
+    receiver_await(receiver, course->awaited);
     const reference_counts_t counts = reference_decode(bytes, size, &options, expect_item, &run);
     TEST_ASSERT_EQUAL_INT(TMINI_FRAME_NONE, next_frame(&run));
     TEST_ASSERT_EQUAL_UINT(0, tmini_parser_pending(&receiver->parser));

@@ -50,7 +50,11 @@ void receiver_abandon(receiver_t *receiver);
 /* Returns the next frame when no more bytes will come: incomplete candidates are abandoned. */
 tmini_frame_type_t receiver_next_at_end(receiver_t *receiver);
 
-void receiver_await(receiver_t *receiver, uint8_t mode, uint8_t type, uint8_t length);
+/* NULL: nothing. */
+void receiver_await(receiver_t *receiver, const reference_reply_t *awaited);
+
+/* Asserts that every byte has been counted once or waits. */
+void receiver_check_accounts(const receiver_t *receiver);
 
 /* How receiver_compare() feeds the bytes. */
 typedef struct {

@@ -290,10 +290,7 @@ static bool overflow_one_stream(bool is_even)
     (void)is_even;
     make_stream(max_samples);
     open_any_ring(max_samples, false);
-    if (options.awaited != NULL) {
-        receiver_await(&receiver, options.awaited->mode, options.awaited->type,
-                       (uint8_t)options.awaited->length);
-    }
+    receiver_await(&receiver, options.awaited);
     frame_count = 0;
     matched = 0;
     gap_count = 0;

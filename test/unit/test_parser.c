@@ -260,7 +260,7 @@ void test_every_bit_of_the_length_is_compared(void)
 {
     for (unsigned bit = 0; bit < 30; bit++) {
         receiver_open(&receiver, memory, 256, 0);
-        receiver_await(&receiver, 0, 0x06, 3);
+        receiver_await(&receiver, &(const reference_reply_t){0, 0x06, 3});
         memcpy(bytes, health_reply, 10);
         bytes[2 + bit / 8] ^= (uint8_t)(1u << bit % 8);
         feed(bytes, 10);
@@ -387,9 +387,10 @@ static void tell_await(const char *word)
         (void)tmini_parser_await(&receiver.parser, NULL);
         return;
     }
-    const unsigned long mode = strtoul(word, &rest, 10);
-    const unsigned long type = strtoul(rest + 1, &rest, 16);
-    receiver_await(&receiver, (uint8_t)mode, (uint8_t)type, (uint8_t)strtoul(rest + 1, NULL, 10));
+    reference_reply_t awaited = {.mode = (uint8_t)strtoul(word, &rest, 10)};
+    awaited.type = (uint8_t)strtoul(rest + 1, &rest, 16);
+    awaited.length = (uint32_t)strtoul(rest + 1, NULL, 10);
+    receiver_await(&receiver, &awaited);
 }
 
 static void tell_word(char *word)
