@@ -144,8 +144,7 @@ def check_c(block, place, language="c"):
     text = program(block) if language == "c" else block.text
     run(compiler, "-fsyntax-only", *WARNINGS, *flags, "-x", language, "-", input=text, cwd=ROOT)
     if document in BOTH and language == "c" and place.compilers["c++"]:
-        run(place.compilers["c++"], "-fsyntax-only", *WARNINGS, *flags[1:], *AS_CXX, "-",
-            input=text, cwd=ROOT)
+        run(place.compilers["c++"], "-fsyntax-only", *WARNINGS, *flags[1:], *AS_CXX, "-", input=text, cwd=ROOT)
 
 
 def check_cxx(block, place):
@@ -233,8 +232,7 @@ def check_conf(block, _place):
         setting = re.fullmatch(r"(CONFIG_(\w+))=(y|n|\d+|0x[0-9a-fA-F]+|\"[^\"]*\")", line)
         if not setting:
             raise Failed(f"no setting: {line}")
-        if setting[1] not in ZEPHYR_SETTINGS and \
-                not re.search(rf"config {setting[2]}$", known, re.MULTILINE):
+        if setting[1] not in ZEPHYR_SETTINGS and not re.search(rf"config {setting[2]}$", known, re.MULTILINE):
             raise Failed(f"no such setting: {setting[1]}")
 
 

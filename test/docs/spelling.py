@@ -60,8 +60,7 @@ def misspelt(lines):
 
 
 def check_documents():
-    paths = [*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")),
-             *sorted(ROOT.glob("port/*/*.h"))]
+    paths = [*documents(), *sorted(ROOT.glob("lib/include/tmini/**/*.h")), *sorted(ROOT.glob("port/*/*.h"))]
     lines = {path: text_of(path) for path in paths}
     complaints = []
     for word in sorted(misspelt([line for path in paths for _, line in lines[path]])):

@@ -30,8 +30,7 @@ def facts(text):
     plain = re.sub(r"\]\([^)]*\)|`[^`]*`|<!--.*?-->", " ", text)
     figures = re.findall(r"(?<![A-Za-z\d.])\d+(?:[.,]\d+)*(?![A-Za-z\d])", plain)
     names = re.findall(r"[A-Z][A-Za-z]*\d+[A-Za-z\d]*", plain)
-    return {"links": sorted(links), "code": sorted(set(code)), "figures": sorted(figures),
-            "names": sorted(set(names))}
+    return {"links": sorted(links), "code": sorted(set(code)), "figures": sorted(figures), "names": sorted(set(names))}
 
 
 def differences():

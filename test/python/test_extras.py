@@ -178,8 +178,7 @@ def test_foxglove_gets_each_scan(command, simulator):
         (channel,) = channels
         assert (channel["topic"], channel["encoding"], channel["schemaName"]) == (
             "/scan", "protobuf", "foxglove.LaserScan")
-        client.send(json.dumps({"op": "subscribe",
-                                "subscriptions": [{"id": 7, "channelId": channel["id"]}]}))
+        client.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 7, "channelId": channel["id"]}]}))
         before, seen = None, 0
         for _ in range(60):
             data = client.recv(60)

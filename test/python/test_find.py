@@ -183,6 +183,5 @@ def test_a_line_is_judged_with_care_however_busy_the_computer(
 def test_the_known_chips_are_those_of_the_tool():
     sources = (ROOT / "examples" / "host").glob("*.c")
     text = "".join(path.read_text() for path in sources)
-    chips = {tuple(int(number, 16) for number in chip)
-             for chip in re.findall(r'"([0-9a-f]{4}):([0-9a-f]{4})"', text)}
+    chips = {tuple(int(number, 16) for number in chip) for chip in re.findall(r'"([0-9a-f]{4}):([0-9a-f]{4})"', text)}
     assert chips == tmini._find._CHIPS

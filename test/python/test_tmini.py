@@ -32,8 +32,7 @@ from lidar_bytes import damaged, timed
 
 def decode(path, *options):
     """The scans that the tool decodes, as JSON objects."""
-    result = subprocess.run([TOOL, "decode", "-q", "--json", *options, path],
-                            capture_output=True, check=False)
+    result = subprocess.run([TOOL, "decode", "-q", "--json", *options, path], capture_output=True, check=False)
     return [json.loads(line) for line in result.stdout.splitlines()]
 
 
@@ -132,8 +131,7 @@ def test_points_are_a_quarter_of_a_millisecond_apart():
 
 def test_a_scan_comes_out_as_the_robot_sees_it():
     plain = next(tmini.read(RECORDINGS / "sim-6hz.bin"))
-    turned = next(tmini.read(RECORDINGS / "sim-6hz.bin", front=87.5, upside_down=True,
-                             mask=[(-10, 10)]))
+    turned = next(tmini.read(RECORDINGS / "sim-6hz.bin", front=87.5, upside_down=True, mask=[(-10, 10)]))
     assert np.array_equal(turned.angles_deg, (87.5 - plain.angles_deg) % 360)
     masked = (turned.angles_deg <= 10) | (turned.angles_deg >= 350)
     assert np.isnan(turned.ranges_m[masked]).all() and masked.any()

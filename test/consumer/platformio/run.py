@@ -86,8 +86,7 @@ def environment(root, work):
 
 
 def build(project, name, env):
-    subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name],
-                   env=env, check=True)
+    subprocess.run([sys.executable, "-m", "platformio", "run", "-d", project, "-e", name], env=env, check=True)
     folder = os.path.join(env["PLATFORMIO_WORKSPACE_DIR"], "build", name)
     return os.path.join(folder, "program")
 

@@ -77,8 +77,7 @@ def measure_compiler(name, folder, made):
 def library_version(target, header, macro):
     """The C library's version, from its own header."""
     probe = ["-dM", "-E", "-include", header, "-x", "c", "/dev/null"]
-    found = re.search(rf"#define {macro} \"(.*)\"",
-                      run(target.tool("gcc"), *target.machine, *probe))
+    found = re.search(rf"#define {macro} \"(.*)\"", run(target.tool("gcc"), *target.machine, *probe))
     return found[1] if found else "unknown"
 
 

@@ -42,12 +42,10 @@ class Machine:
         with open(program, "rb") as file:
             elf = ELFFile(file)
             symbols = list(elf.get_section_by_name(".symtab").iter_symbols())
-            segments = [(s["p_vaddr"], s.data(), s["p_memsz"]) for s in elf.iter_segments()
-                        if s["p_type"] == "PT_LOAD"]
+            segments = [(s["p_vaddr"], s.data(), s["p_memsz"]) for s in elf.iter_segments() if s["p_type"] == "PT_LOAD"]
         self.addresses = {s.name: s["st_value"] & ~1 for s in symbols if s.name}
         self.sizes = {s.name: s["st_size"] for s in symbols}
-        self.functions = sorted((s["st_value"] & ~1, s.name) for s in symbols
-                                if s["st_info"]["type"] == "STT_FUNC")
+        self.functions = sorted((s["st_value"] & ~1, s.name) for s in symbols if s["st_info"]["type"] == "STT_FUNC")
         self._starts = [start for start, _ in self.functions]
         self._make_processor(target_name)
         self._load(segments)

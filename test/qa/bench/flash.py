@@ -59,8 +59,7 @@ def weigh(target, objects, program, functions=()):
             support += size
     if not modules:
         raise BenchError(f"{program} has nothing of the library")
-    return {"modules": modules, "own": sum(modules.values()), "support": support,
-            "writable": writable}
+    return {"modules": modules, "own": sum(modules.values()), "support": support, "writable": writable}
 
 
 def measure(target, level, objects, folder):

@@ -314,8 +314,7 @@ def measure(target, level, objects, folder, streams):
     costs = {}
     for name, feed, streaming in (("bytes", "bytes", False), ("blocks", "blocks", False),
                                   ("dma", "dma", False), ("streaming", "blocks", True)):
-        costs[name], session = through(target, program, clean, feed, streaming,
-                                       streams["clean packets"])
+        costs[name], session = through(target, program, clean, feed, streaming, streams["clean packets"])
         if name == "bytes":
             idle = {ms: session.idle_poll(ms) for ms in (0, 1)}
             feed_worst = max(session.feed_worst, full_ring(target, program))

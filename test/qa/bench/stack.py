@@ -25,8 +25,7 @@ TAKEN = re.compile(r"\t(?:sub(?:\.w|w)?\s+sp,(?: sp,)? ?#|add\s+sp,sp,-)(\d+)")
 SET_UP = ("tmini_fields_init",)
 
 # Called from the interrupt; everything else is called from the thread that polls.
-INTERRUPT = ("tmini_ring_put_at_stop", "tmini_ring_write", "tmini_ring_room", "tmini_ring_publish",
-             "tmini_ring_gap")
+INTERRUPT = ("tmini_ring_put_at_stop", "tmini_ring_write", "tmini_ring_room", "tmini_ring_publish", "tmini_ring_gap")
 
 
 class Function:

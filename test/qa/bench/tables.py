@@ -27,8 +27,7 @@ def small(figures):
 
 
 def versions(figures):
-    return table(["tool", "version"], [[name, text] for name, text in figures["versions"]]) \
-        .replace("---:", "---")
+    return table(["tool", "version"], [[name, text] for name, text in figures["versions"]]).replace("---:", "---")
 
 
 def memory(figures):
@@ -61,8 +60,7 @@ def per_poll(figures):
     m4 = figures["targets"]["cortex-m4", "-Os"]["counts"]["per poll"]
     m0 = figures["targets"]["cortex-m0", "-Os"]["counts"]["per poll"]
     x86 = figures["host"]["per poll"]
-    rows = [[count, *(one(f[count][feed]) for f in (m0, m4, x86) for feed in ("bytes", "blocks"))]
-            for count in m4]
+    rows = [[count, *(one(f[count][feed]) for f in (m0, m4, x86) for feed in ("bytes", "blocks"))] for count in m4]
     return table(["bytes per poll", *(f"{title}, by {feed}" for title in
                                       ("Cortex-M0", "Cortex-M4", "x86-64")
                                       for feed in ("bytes", "blocks"))], rows)
@@ -76,16 +74,14 @@ def compared(figures):
     rows += [[f"full driver, by {feed}", one(host[feed]),
               *(one(sum(f["costs"][feed]) + (f["caller"] if feed == "bytes" else 0)) for f in m4)]
              for feed in ("blocks", "bytes")]
-    return table(["instructions per byte", "x86-64 `-O2`", "Cortex-M4 `-Os`", "Cortex-M4 `-O2`"],
-                 rows)
+    return table(["instructions per byte", "x86-64 `-O2`", "Cortex-M4 `-Os`", "Cortex-M4 `-O2`"], rows)
 
 
 def cpu(figures):
     rows = []
     for title, name, megahertz in load.BOARDS:
         f = figures["targets"][name, "-Os"]["counts"]
-        rows.append([title, *(one(load.percent(f, megahertz, feed)) + " %"
-                              for feed in ("bytes", "dma"))])
+        rows.append([title, *(one(load.percent(f, megahertz, feed)) + " %" for feed in ("bytes", "dma"))])
     return table(["load, library at `-Os`", "interrupt per byte", "DMA"], rows)
 
 
@@ -94,8 +90,7 @@ def pauses(_figures):
         pause = load.longest_pause_ms(ring, dma)
         return f"{int(pause)} ms" if pause >= 1 else "–"
 
-    rows = [[f"{ring} bytes", text(ring, False), text(ring, True)]
-            for ring in load.RINGS]
+    rows = [[f"{ring} bytes", text(ring, False), text(ring, True)] for ring in load.RINGS]
     return table(["receive buffer", "interrupt or blocks", "DMA"], rows)
 
 

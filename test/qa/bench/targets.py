@@ -55,8 +55,7 @@ class Target:
 
     def compile_library(self, level, folder):
         """Compiles all of lib/src, with call graphs and stack sizes in *.ci files beside the objects."""
-        return [self.compile(source, level, folder, "-fcallgraph-info=su,da")
-                for source in LIB_SOURCES]
+        return [self.compile(source, level, folder, "-fcallgraph-info=su,da") for source in LIB_SOURCES]
 
     def link(self, objects, program, functions=()):
         """Links without start-up code. Keeps only these functions, bench_… and interrupt_…, and what they need.
@@ -93,8 +92,7 @@ def headers(target):
 def with_clang(target, *machine):
     """The same processor with Clang as the compiler; the other tools stay."""
     compiler = ("clang", *machine, "-isystem", headers(target))
-    return Target(target.name, target.title + " Clang", target.prefix, target.machine,
-                  target.link_options, compiler)
+    return Target(target.name, target.title + " Clang", target.prefix, target.machine, target.link_options, compiler)
 
 
 def freestanding(target):
@@ -126,5 +124,4 @@ def contributions(map_file):
     text = map_file.read_text()
     text = text[text.index("Linker script and memory map"):]
     text = re.sub(r"\n( \.\S+)\n\s+", r"\n\1 ", text)  # Join the line of a long name with the next one.
-    return [(section, int(size, 16), file) for section, size, file in SECTION.findall(text)
-            if int(size, 16) > 0]
+    return [(section, int(size, 16), file) for section, size, file in SECTION.findall(text) if int(size, 16) > 0]

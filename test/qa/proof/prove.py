@@ -77,8 +77,7 @@ def use(name, bounds, *broken, **more):
 
 
 def driver(name, *broken, **more):
-    return Proof("driver_" + name, DRIVER_FILES, DRIVER, 22, ANY_LIDAR, broken,
-                 loops="fill_memory.0:65", **more)
+    return Proof("driver_" + name, DRIVER_FILES, DRIVER, 22, ANY_LIDAR, broken, loops="fill_memory.0:65", **more)
 
 
 PROOFS = [

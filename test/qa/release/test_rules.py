@@ -109,8 +109,7 @@ class Rules(unittest.TestCase):
                    f"\n## 2.3.4 (2026-01-02)\n\n{section}\n## 2.3.3 (2026-01-01)\n\nOld.\n")
         self.run_script("version.py", "--write", "2.3.4")
         home = re.search('HOMEPAGE_URL "(.*)"', self.read("CMakeLists.txt"))[1]
-        self.assertEqual(self.run_script("notes.py").stdout,
-                         section.replace("docs/", f"{home}/blob/v2.3.4/docs/"))
+        self.assertEqual(self.run_script("notes.py").stdout, section.replace("docs/", f"{home}/blob/v2.3.4/docs/"))
         self.assertEqual(self.run_script("notes.py", "--tag").stdout,
                          "tmini 2.3.4\n\n" + section.replace("### Three", "Three:"))
 
