@@ -2,7 +2,8 @@
 # Copyright (c) 2026 The tmini authors
 
 # tmini_add_unit_test(NAME
-#     SOURCES test_file.c [more.c …]   the first one holds the tests: void test_…(void)
+#     [SOURCES test_file.c more.c …]   the first one holds the tests: void test_…(void); by default
+#                                      NAME.c alone
 #     [SHARED file.c …]                sources whose tests run, too, before those of the first one
 #     [MOCKS header.h …]               functions declared there are mocked; in the test file,
 #                                      #include "mock_header.h"
@@ -90,9 +91,12 @@ endfunction()
 
 function(tmini_add_unit_test name)
     cmake_parse_arguments(arg "" "LABEL" "SOURCES;SHARED;MOCKS;LIBRARIES;NOT_ON" ${ARGN})
-    if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
-        message(FATAL_ERROR "tmini_add_unit_test(${name}): needs SOURCES; "
-            "not understood: ${arg_UNPARSED_ARGUMENTS}")
+    if(arg_UNPARSED_ARGUMENTS)
+        message(FATAL_ERROR
+            "tmini_add_unit_test(${name}): not understood: ${arg_UNPARSED_ARGUMENTS}")
+    endif()
+    if(NOT arg_SOURCES)
+        set(arg_SOURCES ${name}.c)
     endif()
     if(TMINI_TEST_MACHINE IN_LIST arg_NOT_ON OR
             (CMAKE_CROSSCOMPILING AND "others" IN_LIST arg_NOT_ON))

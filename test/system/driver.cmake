@@ -9,14 +9,10 @@ target_link_libraries(tmini_bed PUBLIC tmini_simulator tmini::tmini)
 target_compile_options(tmini_bed PRIVATE -O2 -Wall -Wextra $<$<BOOL:${TMINI_WERROR}>:-Werror>)
 set_target_properties(tmini_bed PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 
-tmini_add_unit_test(test_stamps
-    SOURCES test_stamps.c
-    LIBRARIES tmini_bed)
+tmini_add_unit_test(test_stamps LIBRARIES tmini_bed)
 
 # Programs as users write them, at every moment at which power may come or fail.
-tmini_add_unit_test(test_programs
-    SOURCES test_programs.c
-    LIBRARIES tmini_test_rows tmini_bed)
+tmini_add_unit_test(test_programs LIBRARIES tmini_test_rows tmini_bed)
 
 # explore: at every event on the wire every trouble, and every pair of them (triples by hand).
 # stories: random.

@@ -5,8 +5,7 @@
 function(tmini_add_driver_tests)
     cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "NOT_ON")
     foreach(test ${arg_UNPARSED_ARGUMENTS})
-        tmini_add_unit_test(${test} SOURCES ${test}.c LIBRARIES tmini_test_tale
-            NOT_ON ${arg_NOT_ON})
+        tmini_add_unit_test(${test} LIBRARIES tmini_test_tale NOT_ON ${arg_NOT_ON})
         if(TARGET ${test})
             target_include_directories(${test} PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
         endif()
@@ -18,10 +17,10 @@ tmini_add_driver_tests(test_tmini test_command test_blocking test_poll test_reco
 tmini_add_driver_tests(test_effort test_pauses test_monitor NOT_ON int16)
 
 # What the driver asks of its port, in which order; the port is mocked.
-tmini_add_unit_test(test_port_calls SOURCES test_port_calls.c MOCKS ../support/port_functions.h)
+tmini_add_unit_test(test_port_calls MOCKS ../support/port_functions.h)
 
 # One module of the driver.
-tmini_add_unit_test(test_line SOURCES test_line.c LIBRARIES tmini_test_rows NOT_ON int16)
+tmini_add_unit_test(test_line LIBRARIES tmini_test_rows NOT_ON int16)
 if(TARGET test_line)
     target_include_directories(test_line PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
