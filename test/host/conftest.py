@@ -347,6 +347,20 @@ def environment(clock, folder, monkeypatch):
 
 
 @pytest.fixture
+def played(monkeypatch, environment):
+    """A played computer: played(name=arguments, …) adds processes to it, from number 800 on."""
+    monkeypatch.setenv("TMINI_ROOT", "root")
+
+    def add(**processes):
+        os.makedirs("root/sys/class/tty/console", exist_ok=True)
+        for number, (name, arguments) in enumerate(processes.items(), 800):
+            os.makedirs(f"root/proc/{number}/fd")
+            Path(f"root/proc/{number}/cmdline").write_bytes(b"\0".join(map(os.fsencode, arguments.split())) + b"\0")
+            Path(f"root/proc/{number}/stat").write_text(f"{number} ({name}) S 1 800", encoding="ascii")
+    return add
+
+
+@pytest.fixture
 def programs():
     """All that the test has started; ended with it."""
     started = []

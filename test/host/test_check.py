@@ -4,7 +4,6 @@
 """`tmini check` names the true reason in its first two lines, for each fault of the simulated lidar, for other units,
 bridges and terminals, and for ports without a lidar."""
 
-import os
 import re
 import signal
 import subprocess
@@ -194,23 +193,6 @@ def test_a_lidar_that_answers_but_does_not_scan(answerer, check):
 
 
 # ------------------------------------------------------------------------------------------------- other programs
-
-def play_proc(**processes):
-    """The folders of a played computer: its devices, and its processes by name with their arguments."""
-    os.makedirs("root/sys/class/tty/console", exist_ok=True)
-    for number, (name, arguments) in enumerate(processes.items(), 800):
-        os.makedirs(f"root/proc/{number}/fd")
-        with open(f"root/proc/{number}/cmdline", "wb") as file:
-            file.write(b"\0".join(word.encode() for word in arguments.split()) + b"\0")
-        with open(f"root/proc/{number}/stat", "w", encoding="ascii") as file:
-            file.write(f"{number} ({name}) S 1 800")
-
-
-@pytest.fixture
-def played(monkeypatch, environment):
-    monkeypatch.setenv("TMINI_ROOT", "root")
-    return play_proc
-
 
 def test_a_getty_on_the_port_is_named(talker, check, played):
     port = talker(b"")

@@ -377,10 +377,8 @@ def test_with_wait_another_lidar_on_the_port_is_not_taken(lidar, scanning, other
 # ------------------------------------------------------------------------------- ports, over a played /dev and /sys
 
 @pytest.fixture
-def computer(monkeypatch, environment):
+def computer(played):
     """A played computer: computer(tty, device, …) adds a port."""
-    monkeypatch.setenv("TMINI_ROOT", "root")
-
     def add(tty, device, maker="10c4:ea60", serial=None, by_id=None, by_path=None):
         plug_in(device, f"root/dev/{tty}")
         for kind, name in (("by-id", by_id), ("by-path", by_path)):
@@ -450,7 +448,7 @@ def test_the_only_adapter_that_may_be_a_lidars_is_taken(computer, lidar, talker,
     assert output("health") == "healthy\n"
 
 
-def test_ask_shows_which_lidar_is_where(computer, lidar, talker, other, output, clock):
+def test_ask_shows_which_lidar_is_where(computer, played, lidar, talker, other, output, clock):
     first, second, streaming = lidar(), lidar(*other), lidar()
     named = lidar()
     computer("ttyUSB0", first.port, by_path="pci-1")
@@ -460,23 +458,21 @@ def test_ask_shows_which_lidar_is_where(computer, lidar, talker, other, output, 
     computer("ttyUSB4", named.port, "dead:beef")
     computer("ttyACM0", "/dev/null", "0483:5740")
     computer("ttyUSB6", talker(NOISE))
-    os.makedirs("root/proc/812")
     computer("ttyUSB5", talker(b""), "067b:2303")
-    for name, content in (("cmdline", "screen\0/dev/ttyUSB5\0"), ("stat", "812 (screen) S 1 812")):
-        with open(f"root/proc/812/{name}", "w", encoding="ascii") as file:
-            file.write(content)
+    played(screen="screen /dev/ttyUSB5")
     plug_in("../../dev/ttyUSB5", "root/dev/serial/by-path/pci-5")
     with streaming.left_scanning():
-        begun = clock.now_ms()
+        begun, busy_s = clock.now_ms(), sum(os.times()[2:4])
         text = output("ports", "--ask")
         assert clock.now_ms() - begun <= 3200
+        assert sum(os.times()[2:4]) - busy_s < 0.5  # Of a processor: it waits between its looks.
     answers = dict(re.search(r"\(root/dev/(\w+), .*?\)[^:]*: (.*)", line).groups() for line in text.splitlines())
     assert answers["ttyUSB0"] == "model 151 (T-mini Plus), serial 2026031700012345"
     assert answers["ttyUSB1"] == "model 151 (T-mini Plus), serial 2026031700054321"
     assert answers["ttyUSB2"] == "asked, no answer"
     assert answers["ttyUSB3"] == "a lidar that scans, not asked; serial 2026031700012345"
     assert answers["ttyUSB4"] == "not asked"
-    assert answers["ttyUSB5"] .startswith("not asked: screen (process 812) uses ")
+    assert answers["ttyUSB5"] .startswith("not asked: screen (process 800) uses ")
     assert answers["ttyUSB6"] == "not asked: bytes come that no T-mini Plus sends"
     assert "not a serial device" in answers["ttyACM0"]
     assert [re.findall("command A5 (..)", device.log) for device in (first, second, named)] == [["90"], ["90"], []]
