@@ -344,6 +344,17 @@ def test_the_server_is_on_the_loopback_interface_unless_asked(server):
     assert process.communicate()[1] == "everybody in the network can see the room\n"
 
 
+def test_what_comes_when_the_server_has_ended_is_for_nobody():
+    from tmini._serve import _Hub
+    hub = _Hub(SimpleNamespace(), None)
+
+    async def scenario():
+        hub.begin()
+
+    asyncio.run(scenario())
+    hub._tap(1000, b"late")
+
+
 def test_a_slow_listener_loses_all_that_waits_and_is_told_so():
     from tmini._serve import _Listener
 

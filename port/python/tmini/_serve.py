@@ -110,7 +110,8 @@ class _Hub:
     def _tap(self, came_us: int, data: bytes | None) -> None:
         """In the lidar's thread. No data: some were lost."""
         if data or data is None:
-            self._loop.call_soon_threadsafe(self._pass_on, came_us, data or b"")
+            with contextlib.suppress(RuntimeError):  # The loop has ended, and the lidar is to be stopped.
+                self._loop.call_soon_threadsafe(self._pass_on, came_us, data or b"")
 
     def _pass_on(self, came_us: int, data: bytes) -> None:
         for at in range(0, len(data) or 1, lib.TMINI_TIMED_MAX):
