@@ -5,6 +5,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -22,8 +23,8 @@ def settings():
 def served(page):
     """The page; `serve` starts the server again, `server` and `sim` are processes."""
     python = os.environ.get("TMINI_PYTHON", sys.executable)
-    if subprocess.run([python, "-c", "import tmini, websockets"], stderr=subprocess.DEVNULL,
-                      check=False).returncode != 0:
+    if shutil.which(python) is None or subprocess.run([python, "-c", "import tmini, websockets"],
+                                                      stderr=subprocess.DEVNULL, check=False).returncode != 0:
         pytest.skip(f"{python} has no tmini[serve] (the test `python` brings it)")
     with subprocess.Popen([os.environ["TMINI_SIM"], "--pty"], stdout=subprocess.PIPE, text=True) as page.sim:
         port = page.sim.stdout.readline().strip()

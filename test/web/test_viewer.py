@@ -112,8 +112,10 @@ def test_the_range_is_the_shortest_that_holds_the_farthest_point(page, tmp_path,
 
 
 def test_a_picture_without_points_has_rings_the_angles_and_an_arrow_to_the_front(page):
-    assert [round(radius, 1) for x, y, radius, first, last in page.drawn("arcs")
-            if (x, y) == (289, 232) and last - first > 2 * math.pi - 0.01] == [188, 37.6, 75.2, 112.8, 150.4, 8, 2.5]
+    whole = [(round(radius, 1), first) for x, y, radius, first, last in page.drawn("arcs")
+             if (x, y) == (289, 232) and last - first > 2 * math.pi - 0.01]
+    assert [radius for radius, _ in whole] == [188, 37.6, 75.2, 112.8, 150.4, 8, 2.5]
+    assert {first for _, first in whole[1:]} == {0}  # Where the pen was put down: else it draws a chord, too.
 
     def line(angle, near, far):
         right, ahead = math.sin(math.radians(angle)), math.cos(math.radians(angle))
@@ -264,16 +266,16 @@ class TestAppearance:
 
 
 @pytest.mark.parametrize("settings, rows", [
-    ({"size": PHONE}, {-60: 70, -36: 18, -12: 22}), ({}, {-36: 70, -12: 22}), ({"size": (1600, 900)}, {-12: 70})],
-    ids=["phone", "window", "large"])
+    ({"size": PHONE}, {-60: (2, 70), -36: (2, 18), -12: (1, 22)}), ({}, {-36: (3, 70), -12: (2, 22)}),
+    ({"size": (1600, 900)}, {-12: (5, 70)})], ids=["phone", "window", "large"])
 def test_the_legend_has_a_row_for_what_fits_each_in_the_middle(simulated, rows):
-    """Of a row: its place above the lower edge, and the width of its first sign."""
+    """Of a row: its place above the lower edge, how many signs it has, and the width of the first."""
     width, height = (simulated.element("picture").get_property(f"client{side}") for side in ("Width", "Height"))
     texts = [(y - height, x, x + wide) for text, x, y, wide in simulated.drawn("written") if re.match("[a-z]+ ", text)]
     assert {y for y, *_ in texts} == set(rows)
-    for row, sign in rows.items():
+    for row, (count, sign) in rows.items():
         ends = [end for y, *at in texts if y == row for end in at]
-        assert ends[0] - sign + ends[-1] == pytest.approx(width, abs=0.1)
+        assert (len(ends), ends[0] - sign + ends[-1]) == (2 * count, pytest.approx(width, abs=0.1))
 
 
 def test_points_on_dark_have_the_colours_of_the_tools_pictures():
