@@ -16,5 +16,4 @@ foreach(target esp32-c3 rp2040 cortex-m4)
     tmini_add_check(barriers.${target} compile
         COMMAND ${TMINI_SH} ${CMAKE_CURRENT_SOURCE_DIR}/barriers.sh ${target})
 endforeach()
-tmini_add_check(layers compile NEEDS tmini
-    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/layers.py)
+tmini_add_check(layers compile NEEDS tmini COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/layers.py)

@@ -93,8 +93,7 @@ endfunction()
 # tmini_add_skipped_test(NAME LABEL REASON [ALL]): adds a test that only reports why it is skipped.
 function(tmini_add_skipped_test name label reason)
     message(STATUS "Not tested: ${name}: ${reason}")
-    tmini_add_check(${name} ${label} ${ARGN}
-        COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
+    tmini_add_check(${name} ${label} ${ARGN} COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${reason}")
 endfunction()
 
 # If one of the programs is not installed, the test NAME of the long run is skipped, and the calling

@@ -198,8 +198,8 @@ def read_until(lidar, wish, seconds=60):
     pytest.fail("no such scan came")
 
 
-def wait_until(condition, seconds=60):
-    end = time.monotonic() + seconds
+def wait_until(condition):
+    end = time.monotonic() + 60
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.01)

@@ -9,7 +9,6 @@
 #ifndef BRIDGE_H
 #define BRIDGE_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

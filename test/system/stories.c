@@ -9,8 +9,6 @@
 
 #include "bed.h"
 
-#include "tmini/tmini_names.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,6 @@
 #include "tmini/parts/tmini_decoder.h"
 #include "unity.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static uint8_t memory[512];

@@ -14,8 +14,6 @@
 
 #include "tale.h"
 
-#include <string.h>
-
 #define RING_SIZE 1024u
 
 static uint8_t memory[RING_SIZE];

@@ -10,7 +10,6 @@
 #define FREERTOS_MODEL_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "FreeRTOS.h"

@@ -9,7 +9,6 @@
 
 #include <string.h>
 
-#include "known_packets.h"
 #include "play.h"
 #include "random.h"
 #include "unity.h"

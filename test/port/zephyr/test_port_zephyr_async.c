@@ -9,7 +9,6 @@
 
 #include <zephyr/drivers/uart.h>
 
-#include "irq_lines.h"
 #include "every_port.h"
 #include "tmini_zephyr.h"
 #include "zephyr_model.h"

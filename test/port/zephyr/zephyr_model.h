@@ -12,7 +12,6 @@
 #define ZEPHYR_MODEL_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include <zephyr/drivers/uart.h>
