@@ -346,8 +346,8 @@ typedef enum {
 tmini_turn_t tmini_monitor_packet(tmini_monitor_t *monitor, const tmini_decoder_t *decoder,
                                   uint16_t wanted_chz, uint16_t reported_chz);
 
-/* The wanted frequency has changed, or the lidar has been lost: forgets the fault, the count of turns
- * at a wrong one, and a wish that is not still yet. The next start will set it. */
+/* The wanted frequency has changed, or the lidar has been lost: forgets the fault, the count of
+ * turns at a wrong one, and a wish that is not still yet. The next start will set it. */
 void tmini_monitor_forget_frequency(tmini_monitor_t *monitor);
 
 /* A wish that is still for this many start packets is carried out: while somebody moves a slider,
