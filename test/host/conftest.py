@@ -297,6 +297,7 @@ class Terminal(Watched):
     def kill(self):
         if self.process.isalive():
             self.process.kill(signal.SIGKILL)
+            self.process.wait()  # Else close() gives it a tenth of a second.
         self.process.ptyproc.delayafterclose = 0
         self.process.close(force=False)
 

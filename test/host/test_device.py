@@ -258,8 +258,8 @@ def test_with_closed_output_nothing_goes_to_the_lidar(real_lidar):
     assert shell(real_lidar[0], 'exec "$TMINI" health >&- 2>&-').returncode == 1
     real_lidar[1].terminate()
     log = real_lidar[1].communicate()[0]
-    # A stop, because the lidar's state is unknown, and the query.
-    assert log.count("command A5") == 4 and " 0 unknown," in log
+    # A stop, because the lidar's state is unknown, and the query; both again if the computer is too busy for an answer.
+    assert set(re.findall("command A5 (..)", log)) == {"65", "90", "92"} and " 0 unknown," in log
 
 
 @pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
