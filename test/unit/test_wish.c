@@ -155,9 +155,7 @@ static const row_t tales[] IN_FLASH = {
     ROW(a_slider_that_never_rests_holds_a_start_up_for_64_steps_and_its_last_wish_is_reached,
         "wish:800 idle start >0D <600 +50 32( >0B <700 set:600 +50 >0C <600 set:800 +50 ) >65 "
         "+50 >60 <scan <S !STARTED !FAILED ?REPLY turns:2:60 <turn:60 !SCAN !PAUSED >65 +50 >0D "
-        "<600 +50 "
-        ">0B <700 +50 >0B <800 +50 >0D <800 !FREQUENCY >60 <scan <S !STARTED "
-        "turns:9:80"),
+        "<600 +50 >0B <700 +50 >0B <800 +50 >0D <800 !FREQUENCY >60 <scan <S !STARTED turns:9:80"),
     ROW(the_steps_of_a_lidar_that_is_not_to_scan_are_counted_for_each_wish,
         "idle set:700 >0D <600 +50 >0B <650 set:800 +50 31( >0B <700 +50 >0B <600 +50 ) >0B <800 "
         "+50 >0D <800 !FREQUENCY"),
