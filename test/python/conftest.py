@@ -22,6 +22,13 @@ for _number in (signal.SIGINT, signal.SIGHUP):  # Those that a background job, o
         signal.signal(_number, lambda *_: None)  # What is started does not inherit it.
 
 
+def wait_until(condition, seconds=60):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
 class Simulator:
     """tmini-sim on a pseudo-terminal whose name stays the same, as that of a USB adapter."""
 
@@ -36,13 +43,9 @@ class Simulator:
         os.symlink(self.process.stdout.readline().strip(), self.port)
         return self.port
 
-    def await_idle(self, seconds=30):
+    def await_idle(self):
         """Fails unless the last thing that the lidar does is to stop."""
-        for _ in range(100 * seconds):
-            if self.log.read_text().splitlines()[-1].endswith("idle"):
-                return
-            time.sleep(0.01)
-        pytest.fail("the lidar still scans")
+        wait_until(lambda: self.log.read_text().splitlines()[-1].endswith("idle"), 30)
 
     def stop(self):
         if self.process is not None:

@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 import tmini
-from conftest import RECORDINGS, ROOT, SIM, TOOL
+from conftest import RECORDINGS, ROOT, SIM, TOOL, wait_until
 from lidar_bytes import damaged, timed
 
 
@@ -196,13 +196,6 @@ def read_until(lidar, wish, seconds=60):
         if scan is not None and wish(scan):
             return scan
     pytest.fail("no such scan came")
-
-
-def wait_until(condition):
-    end = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def test_a_lidar_scans_at_the_frequency_wanted_and_is_stopped_in_the_end(simulator):
