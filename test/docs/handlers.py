@@ -98,7 +98,10 @@ static const char *wrong()
     if (!serve()) {
         return "an overrun without a byte interrupts for ever";
     }
-    return receives(0x44) && fed[1] == 0x22 ? "" : "it receives no more";
+    if (fed.size() != 2 || fed[1] != 0x22) {
+        return "an overrun feeds a byte twice";
+    }
+    return receives(0x44) ? "" : "it receives no more";
 }
 
 int main()

@@ -21,8 +21,8 @@ extern "C" {
 /** The functions of a board. Each gets the configuration's `port_context`. The structure must
  * outlive the lidar; it may be constant, and several lidars may share it. */
 typedef struct {
-    /** Hands up to `count` (at most 2) bytes to the UART. Returns how many it took, 0 to count, or
-     * a negative number when sending has failed. It may take fewer, even none, while the
+    /** Hands up to `count` bytes, 1 or 2, to the UART. Returns how many it took, 0 to count, or a
+     * negative number when sending has failed. It may take fewer, even none, while the
      * transmitter is busy: the driver offers the rest again at a later tmini_poll(). It must not
      * wait longer than the bytes take on the wire (87 µs for two). The bytes are valid only during
      * the call: copy what is sent later. Required, unless listen_only is configured. */

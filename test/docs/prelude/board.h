@@ -29,6 +29,12 @@ typedef struct {
 extern board_usart_t board_usart1;
 #define USART1 (&board_usart1)
 
+typedef enum {
+    USART1_IRQn = 37,
+    DMA2_Stream2_IRQn = 58,
+} IRQn_Type;
+void NVIC_EnableIRQ(IRQn_Type interrupt);
+
 extern const tmini_port_t board_port;
 extern int board_uart;
 

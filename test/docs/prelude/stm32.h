@@ -34,12 +34,6 @@ int osDelay(uint32_t ticks); /* CMSIS-RTOS2 */
 #ifdef REGISTERS
 extern uint8_t rx[1024];
 
-typedef enum {
-    USART1_IRQn = 37,
-    DMA2_Stream2_IRQn = 58,
-} IRQn_Type;
-void NVIC_EnableIRQ(IRQn_Type interrupt);
-
 typedef struct {
     volatile uint32_t CR;
     volatile uint32_t NDTR;

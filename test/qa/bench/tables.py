@@ -108,7 +108,7 @@ def summary(figures):
         ["RAM per lidar, bytes, excluding your buffers",
          *(f["counts"]["tmini_t"] for f in (m0, m4))],
         ["stack, bytes, at most", *(f["stack"]["polling"][0] for f in (m0, m4))],
-        ["instructions in the receive interrupt's call",
+        ["instructions in the receive interrupt's call, at most",
          *(f["counts"]["feed worst"] for f in (m0, m4))],
         ["instructions per byte, from byte to point, fed by blocks",
          *(one(sum(f["counts"]["costs"]["blocks"])) for f in (m0, m4))],
