@@ -15,7 +15,7 @@
  *     ESP_ERROR_CHECK(tmini_esp32_init(&port, &wiring));
  *     config.port = &tmini_esp32_port;
  *     config.port_context = &port;
- *     tmini_init(&lidar, &config);
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { abort(); }
  *     ESP_ERROR_CHECK(tmini_esp32_start(&port, &lidar));   bytes come from here on
  *     tmini_start(&lidar);                                  the lidar scans
  *     for (;;) {

@@ -9,7 +9,9 @@
  *     static tmini_t lidar;
  *
  *     tmini_freertos_init(&port, &wiring);
- *     tmini_init(&lidar, &config);              its port: &tmini_freertos_port; context: &port
+ *     config.port = &tmini_freertos_port;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_freertos_start(&port, &lidar);     bytes are taken
  *     tmini_start(&lidar);                      the lidar scans
  *     for (;;) {

@@ -12,7 +12,9 @@
  *         .uart = uart1, .tx_pin = 4, .rx_pin = 5, .ring = ring, .ring_size = sizeof ring,
  *     };
  *     tmini_pico_init(&port, &wiring);
- *     tmini_init(&lidar, &config);           .port = &tmini_pico_port, .port_context = &port
+ *     config.port = &tmini_pico_port;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_pico_start(&port, &lidar);      bytes come
  *     tmini_start(&lidar);                   the lidar scans
  *     for (;;) {

@@ -11,7 +11,7 @@
  *     tmini_posix_init(&port, "/dev/ttyUSB0");
  *     config.port = &tmini_posix_port;
  *     config.port_context = &port;
- *     tmini_init(&lidar, &config);
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { … }
  *     if (tmini_posix_start(&port, &lidar) != TMINI_POSIX_OK) { … }
  *     tmini_start(&lidar);
  *     while (tmini_posix_wait(&port, 10) == TMINI_POSIX_OK) {

@@ -7,7 +7,9 @@
  * settings.
  *
  *     tmini_stm32_hal_init(&port, &huart1);    after the HAL's own initialisation
- *     tmini_init(&lidar, &config);             .port = &tmini_stm32_hal_port, .port_context = &port
+ *     config.port = &tmini_stm32_hal_port;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_stm32_hal_start(&port, &lidar);    from now on bytes come in
  *     tmini_start(&lidar); …                   commands, polling
  *     tmini_stm32_hal_stop(&port);             no more bytes come in; start again as you like

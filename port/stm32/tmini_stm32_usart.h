@@ -9,10 +9,14 @@
  *   tmini_stm32_usart_rdr.c   registers ISR and RDR: all others (C0, F0, F3, F7, G0, G4, H5, H7,
  *                             L0, L4, L5, U0, U5, WB, WL, …), and every LPUART
  *
+ * In the program:
+ *
  *     static const tmini_stm32_usart_wiring_t wiring = {
  *         .usart = USART1, .clock_hz = 84000000, .time_ms = &time_ms};
  *     tmini_stm32_usart_init(&port, &wiring);
- *     tmini_init(&lidar, &config);          .port = &tmini_stm32_usart_port, .port_context = &port
+ *     config.port = &tmini_stm32_usart_port;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_stm32_usart_start(&port, &lidar);    an interrupt per byte; with rx_dma, by DMA
  *     NVIC_EnableIRQ(USART1_IRQn);
  *     …

@@ -6,7 +6,9 @@
  * the source marks FILL IN. ../README.md explains the steps.
  *
  *     tmini_port_template_init(&port, uart);
- *     tmini_init(&lidar, &config);              .port = &tmini_port_template, .port_context = &port
+ *     config.port = &tmini_port_template;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_port_template_start(&port, &lidar); from now on bytes come in
  *     tmini_start(&lidar); …                    commands, polling
  *     tmini_port_template_stop(&port);

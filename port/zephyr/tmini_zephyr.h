@@ -12,7 +12,9 @@
  *     static tmini_t lidar;
  *
  *     tmini_zephyr_init(&port, UART);
- *     tmini_init(&lidar, &config);             .port = &tmini_zephyr_port, .port_context = &port
+ *     config.port = &tmini_zephyr_port;
+ *     config.port_context = &port;
+ *     if (tmini_init(&lidar, &config) != TMINI_OK) { halt(); }
  *     tmini_zephyr_start(&port, &lidar);      bytes come
  *     tmini_start(&lidar);                     the lidar scans
  *     for (;;) {
