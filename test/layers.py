@@ -32,12 +32,10 @@ CALLS = {
     "monitor": "packet ct",
     "tmini": "ring parser frame packet ct decoder command recovery monitor line builder",
     "blocking": "tmini command recovery",
-    "units": "ranges",
     "sectors": "packet frame",
     "ranges": "units",
     "fields": "cartesian",
-    "cartesian": "mount",
-    "mount": "", "names": "", "isolated": "", "steps": "",
+    "units": "", "cartesian": "", "mount": "", "names": "", "isolated": "", "steps": "",
 }
 
 # Members of tmini_t that a file may read; those before the bar it may write as well. Configuration may be read by all.
