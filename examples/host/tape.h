@@ -44,8 +44,8 @@ typedef struct {
  * not valid, 0: the library's default. */
 void tape_begin(tape_t *tape, const tmini_mount_t *mount, uint8_t max_samples);
 
-/* Takes the file's next bytes, when they are needed; a `count` of 0: there are no more. Returns how
- * many it took. */
+/* Takes the file's next bytes, after tape_next() has asked for them; a `count` of 0: there are no
+ * more. Returns how many it took. */
 size_t tape_feed(tape_t *tape, const uint8_t *bytes, size_t count);
 
 /* Returns what comes next. At the end, an incomplete candidate is re-examined byte by byte. */

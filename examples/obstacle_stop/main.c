@@ -178,7 +178,7 @@ int main(int argc, char **argv)
     if (status == TMINI_POSIX_OK) {
         (void)signal(SIGINT, end);
         (void)signal(SIGTERM, end);
-        if (signal(SIGHUP, end) == SIG_IGN) { /* The terminal was closed. `nohup` ignores it. */
+        if (signal(SIGHUP, end) == SIG_IGN) { /* Under `nohup` it stays ignored. */
             (void)signal(SIGHUP, SIG_IGN);
         }
         show_header();

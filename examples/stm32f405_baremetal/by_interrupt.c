@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
+/* reception.h with an interrupt per byte. */
+
 #include "board.h"
 #include "reception.h"
 #include "stm32f405.h"

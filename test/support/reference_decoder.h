@@ -2,9 +2,9 @@
 /* Copyright (c) 2026 The tmini authors */
 
 /*
- * What a parser must deliver, written as directly as possible from docs/design.md ("Reference
- * semantics of the parser"): over a whole byte array, with random access and no optimisation. Slow
- * and plain on purpose; the library's incremental parser is compared with it. */
+ * What a parser must deliver, written as directly as possible from docs/protocol.md and
+ * docs/design.md ("The parser"): over a whole byte array, with random access and no optimisation.
+ * Slow and plain on purpose; the library's incremental parser is compared with it. */
 
 #ifndef REFERENCE_DECODER_H
 #define REFERENCE_DECODER_H

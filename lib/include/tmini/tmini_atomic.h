@@ -205,8 +205,8 @@ TMINI_INLINE void tmini_fence(void)
 
 /** @def TMINI_WORD_ALIGNMENT
  * Words are loaded only from addresses that are a multiple of this: 4, or 1 where any address
- * works. If it is 1, words are also stored at any address. (Not a knob: compilers make unaligned
- * words of other code, too. A test sets it.) */
+ * works. If it is 1, words are also stored at any address. Do not set it yourself (a test does):
+ * compilers make unaligned words of the library's other code, too. */
 #if defined(TMINI_WORD_ALIGNMENT)
 /* Set by a test. */
 #elif defined(__ARM_FEATURE_UNALIGNED) || defined(__x86_64__) || defined(__i386__) || \

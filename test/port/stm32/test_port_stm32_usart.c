@@ -211,7 +211,8 @@ static const row_t scenes[] IN_FLASH = {
     ROW(a_byte_that_waits_for_dma_is_not_removed,
         "DMA: deaf channel:0 P ~2000 RXNE:1 ORE-stands:1 interrupt interrupt RXNE:1 "
         "ORE:1"),
-    /* On a USART with SR, the idle flag cannot be cleared while a byte waits. */
+    /* On a USART with SR, the idle flag cannot be cleared while a byte waits, as it does when the
+     * channel has stopped: its interrupt has to be switched off, or it comes endlessly. */
     ROW(a_dma_channel_that_has_stopped_is_no_lock_up,
         "DMA: P:10 run channel:0 P:10 run packets:10 channel:1 +2 IDLEIE:1 mark P:10 run more:10 "
         "IDLEIE:1 channel:0 P:10 run stop start P:10 run packets:30"),

@@ -41,9 +41,9 @@ typedef enum {
     INTACT,        /* Points of packets certainly without losses. */
     IN_ONE,        /* Those of them that are in exactly one scan. */
     WITHHELD,      /* Points that the library withheld, because the program was behind. */
-    MIXED_UNTIMED, /* Incomplete scans may mix turns: max_pause_ms is 0; */
-    MIXED_UNSEEN,  /* a poll or a hand-over between the two may have come late; */
-    MIXED_DRIBBLE, /* remains of damaged packets: each silence was shorter than max_pause_ms. */
+    MIXED_UNTIMED, /* Incomplete scans of two turns, because max_pause_ms is 0. */
+    MIXED_UNSEEN,  /* Likewise, a poll or a hand-over between the turns may have come late. */
+    MIXED_DRIBBLE, /* Likewise, remains of damaged packets came: no silence was long enough. */
     SUMS
 } sum_t;
 
@@ -350,9 +350,8 @@ static bool may_be_overwritten(void)
     return bed.config.rx_dma && (counters.bytes_overrun > 0 || bed.gaps > 0);
 }
 
-/* Returns why one incomplete scan may have points of two turns: something is lost between them, and
- * the library measures a silence only by the times of polls and hand-overs. SUMS: nothing
- * explains it. */
+/* Returns why an incomplete scan may have points of two turns: something is lost between them, and
+ * the library measures a silence only by the times of polls and hand-overs. SUMS: it may not. */
 static sum_t explain(const sim_reading_t *reading)
 {
     const uint32_t pause_us = bed.timing.max_pause_ms * 1040u + bed.poll_ms * 1000u +

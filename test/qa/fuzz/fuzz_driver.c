@@ -158,7 +158,7 @@ static void receive_reply(uint8_t shape)
     receive(shape % 4u == 0 ? 0 : header[2]);
 }
 
-/* Calls the functions that are allowed at any time. */
+/* Calls what only asks, and checks the answers' ranges. */
 static void look_around(void)
 {
     tmini_ct_info_t info;
