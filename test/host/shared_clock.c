@@ -146,11 +146,17 @@ static char state_of(pid_t pid)
     return end != NULL ? end[2] : 'X';
 }
 
+static bool has_ended(char state)
+{
+    return state == 'X' || state == 'Z';
+}
+
 /* This process's entry. */
 static program_t *place_of(pid_t pid)
 {
+    program_t *const end = shared->programs + PROGRAMS_MAX;
     program_t *place = NULL;
-    for (program_t *one = shared->programs; one < shared->programs + PROGRAMS_MAX; one++) {
+    for (program_t *one = shared->programs; one < end; one++) {
         if (one->pid == pid) {
             return one;
         }
@@ -158,8 +164,11 @@ static program_t *place_of(pid_t pid)
             place = one;
         }
     }
+    for (program_t *one = shared->programs; one < end && place == NULL; one++) {
+        place = has_ended(state_of(one->pid)) ? one : NULL; /* It ended while nobody looked. */
+    }
     if (place == NULL) {
-        abort(); /* More than PROGRAMS_MAX in one test. */
+        abort(); /* More than PROGRAMS_MAX at once. */
     }
     *place = (program_t){.pid = pid};
     return place;
@@ -197,7 +206,7 @@ static bool is_awaited(program_t *program, bool is_late)
         return true; /* Reading the state takes longer than all the rest. */
     }
     const char state = state_of(program->pid);
-    program->pid = state == 'X' || state == 'Z' ? 0 : program->pid;
+    program->pid = has_ended(state) ? 0 : program->pid;
     program->is_stopped = state == 'T' || state == 't';
     return program->pid != 0 && !program->is_stopped;
 }

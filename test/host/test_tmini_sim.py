@@ -6,6 +6,7 @@
 import os
 import signal
 import socket
+import subprocess
 import termios
 from pathlib import Path
 
@@ -191,6 +192,13 @@ def test_it_ends_after_the_virtual_seconds_given(lidar, client, clock):
 
 
 # A reply takes 3 ms of latency and 43.4 us per byte: less than the 1 s and the 10 ms given.
+def test_the_shared_clock_forgets_programs_that_have_ended(clock):
+    for _ in range(100):  # More than it knows at once.
+        with subprocess.Popen(["true"]) as program:
+            program.wait()
+        clock.expect(program.pid)
+
+
 def test_lines_are_answered_in_the_callers_time(sim, folder):
     (folder / "questions").write_text("0 A590\n1000000\n1000000\n2000000 a50D\n2010000\n", encoding="ascii")
     with open("questions", "rb") as stdin:
