@@ -13,7 +13,7 @@ import subprocess
 
 import pytest
 
-from conftest import HAS_RIGHTS, TMINI, plug_in
+from conftest import HAS_RIGHTS, PATIENCE_S, TMINI, plug_in
 from lidar_bytes import INFORMATION, NOISE
 
 
@@ -268,6 +268,16 @@ def test_a_signal_stops_the_lidar_before_leaving(scanning, number):
     assert run.end(number).status == 0
     assert "tmini: " not in run.err
     device.wait_for_log("stopping -> idle")
+
+
+def test_a_signal_ends_a_scan_that_nobody_reads(lidar, start, clock):
+    """After 5 s of real time, in which what is written may still be read."""
+    device = lidar()
+    run = start("scan", "--csv", "-p", device.port)
+    clock.wait_for_block(run.process.pid)
+    run.process.send_signal(signal.SIGINT)
+    assert run.process.wait(PATIENCE_S) == -signal.SIGINT
+    device.wait_for_log("scanning -> stopping")
 
 
 def test_a_signal_that_is_ignored_stays_ignored(lidar, start, monkeypatch):
