@@ -14,7 +14,7 @@ import threading
 
 import pytest
 from conftest import HERE, PAGE, RECORDINGS, decode, requests, stories
-from lidar_bytes import turn
+from lidar_bytes import MAGIC, turn
 
 SIZE_MAX = 150_000
 
@@ -213,6 +213,13 @@ def saved_recording(page, button, folder):
 def test_what_is_being_recorded_is_saved_when_the_lidar_goes(simulated, tmp_path):
     simulated.play("record; 2 scans")
     assert decode(saved_recording(simulated, "disconnect", tmp_path))[1]["start_packets"] >= 2
+
+
+def test_a_recording_holds_nothing_that_came_before(simulated):
+    simulated.play("2 scans")
+    simulated.run("""document.getElementById('record').addEventListener('click', (event) => event.target.click(),
+                     { once: true })""")
+    assert simulated.save("record")[1] == MAGIC
 
 
 def test_a_recording_is_saved_with_its_times(simulated, tmp_path):
