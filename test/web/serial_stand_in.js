@@ -6,6 +6,8 @@
 // Tests control the adapter by `bench`:
 //
 //     bench.plug()  bench.unplug()         the cable
+//     bench.plugAnother(0xEA60)            another port, of an adapter with this product number
+//     bench.opened                         the product numbers of the ports whose open() was called
 //     bench.choice = 'none'                the user closes the list of ports
 //     bench.opening = 'NetworkError'       open() fails with this error
 //     bench.line = 'good' | 'garbled' | 'held' (bytes come when it is good again) |
@@ -14,7 +16,7 @@
 //     bench.writeError()                   the next write fails, the port stays open
 //     bench.answers = (code) => …          whether the lidar receives this command
 
-const bench = { choice: 'port', opening: null, line: 'good', baudRate: 0, written: [], answers: () => true };
+const bench = { choice: 'port', opening: null, line: 'good', baudRate: 0, written: [], opened: [], answers: () => true };
 
 const PORTION = 64; // Bytes per USB packet.
 
@@ -74,12 +76,19 @@ class StandInPort extends EventTarget {
     #present = true;
     #failsWriting = false;
     #device = new Device();
+    #product;
+
+    constructor(product) {
+        super();
+        this.#product = product;
+    }
 
     getInfo() {
-        return { usbVendorId: 0x10C4, usbProductId: 0xEA60 };
+        return { usbVendorId: 0x10C4, usbProductId: this.#product };
     }
 
     async open({ baudRate, bufferSize = 255 }) {
+        bench.opened.push(this.#product);
         if (this.#state !== 'closed') {
             throw new DOMException('The port is already open.', 'InvalidStateError');
         }
@@ -189,10 +198,11 @@ class StandInPort extends EventTarget {
     }
 
     static {
-        const port = new StandInPort();
+        const port = new StandInPort(0xEA60);
         bench.port = port;
         bench.plug = () => port.#setPower(true);
         bench.unplug = () => port.#setPower(false);
+        bench.plugAnother = (product) => new StandInPort(product).#setPower(true);
         bench.lineError = (name) => port.#failStream(name);
         bench.writeError = () => { port.#failsWriting = true; };
         bench.leaveScanning = async () => { // As another program may have left it.

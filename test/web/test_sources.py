@@ -131,6 +131,11 @@ class TestSerial:
             230400, None, 0xA5, 0x65]
         page.play("connect; state: scanning")
 
+    @pytest.mark.parametrize("other, opened", ((0xEA60, [0xEA60, 0xEA60]), (0x7523, [0xEA60])))
+    def test_only_the_same_kind_of_adapter_takes_over(self, page, other, opened):
+        page.play(f"connect; state: scanning; bench.unplug(); state: unplugged; bench.plugAnother({other})")
+        assert page.run("return bench.opened") == opened
+
     @stories({
         "it scans again with Connect after it was unplugged":
             "connect; state: scanning; bench.unplug(); state: unplugged; disconnect; state: not connected; "
