@@ -251,10 +251,6 @@ static void note_look(device_t *device)
 static tmini_event_t wait_for_event(device_t *device, uint32_t timeout_ms)
 {
     const uint32_t begun_ms = device_ms(device);
-    if (!tmini_posix_is_timed(&device->port)) {   /* Its bytes can wait. */
-        (void)tmini_posix_wait(&device->port, 0); /* Takes those that came while the output was
-                                                   * blocked. */
-    }
     do {
         const tmini_event_t event = tmini_poll(&device->lidar);
         if (event != TMINI_EVENT_NONE && event != TMINI_EVENT_MORE) {
