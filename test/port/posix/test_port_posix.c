@@ -555,6 +555,8 @@ static void tell(char *word)
         tmini_posix_stop(&port);
     } else if (row_is(word, "state")) {
         status = port.state;
+    } else if (row_is(word, "restart")) {
+        tmini_posix_port.restart(&port);
     } else if (row_is(word, "write")) {
         status = tmini_posix_port.write(&port, bytes, 2);
     } else if (row_is(word, "tap")) {
@@ -590,6 +592,8 @@ static const row_t rows[] = {
         "begin hold send:3 start send:4 wait:1000 received:4"),
     ROW(a_lidar_can_be_reached_through_a_socket,
         "socket info hangup wait:1000=unplugged info=unwritten start=failed"),
+    ROW(writing_to_a_socket_whose_other_end_has_gone_raises_no_signal,
+        "pair:0 hangup write=refused state=unplugged"),
     /* Otherwise a child of system() would keep the device claimed after the port has stopped. */
     ROW(children_inherit_neither_device_nor_socket,
         "begin inherited:0 pair:0 inherited:0 hangup socket inherited:0"),
@@ -629,6 +633,11 @@ static const row_t rows[] = {
      * the next attempt is due at once. */
     ROW(a_reconnection_is_a_gap,
         "await=nodevice plug room>0 pause:300 wait:0 reconnections:1 room:0 poll room>0"),
+    /* Its driver may hang. */
+    ROW(a_device_from_which_nothing_comes_is_opened_again,
+        "await=nodevice plug pause:300 wait:0 restart reconnections:2 stop restart "
+        "reconnections:2"),
+    ROW(who_does_not_reconnect_keeps_it, "begin restart reconnections:0 moved:0 state"),
 };
 
 void test_each_row(void)
