@@ -270,14 +270,18 @@ def test_a_signal_stops_the_lidar_before_leaving(scanning, number):
     device.wait_for_log("stopping -> idle")
 
 
-def test_a_signal_ends_a_scan_that_nobody_reads(lidar, start, clock):
+@pytest.mark.parametrize("words, is_stopped", (((), True), (("--listen",), False)))
+def test_a_signal_ends_a_scan_that_nobody_reads(lidar, start, clock, words, is_stopped):
     """After 5 s of real time, in which what is written may still be read."""
     device = lidar()
-    run = start("scan", "--csv", "-p", device.port)
-    clock.wait_for_block(run.process.pid)
-    run.process.send_signal(signal.SIGINT)
-    assert run.process.wait(PATIENCE_S) == -signal.SIGINT
-    device.wait_for_log("scanning -> stopping")
+    with device.left_scanning():
+        run = start("scan", "--csv", "-p", device.port, *words)
+        clock.wait_for_block(run.process.pid)
+        begun = device.log.count("scanning -> stopping")
+        run.process.send_signal(signal.SIGINT)
+        assert run.process.wait(PATIENCE_S) == -signal.SIGINT
+        clock.sleep(1000)
+        assert device.log.count("scanning -> stopping") == begun + is_stopped
 
 
 def test_a_signal_that_is_ignored_stays_ignored(lidar, start, monkeypatch):
