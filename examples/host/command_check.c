@@ -314,6 +314,11 @@ static void judge_line(check_t *check)
     }
 }
 
+static bool was_lost(const device_t *device)
+{
+    return device->silences + device->noises > 0;
+}
+
 /* When the bytes came. A program that does not run receives nothing, either. */
 static void judge_pace(check_t *check)
 {
@@ -323,7 +328,7 @@ static void judge_pace(check_t *check)
     const count_t late =
         witnessed > device->stream.packets ? witnessed - device->stream.packets : 0;
     char halves[80] = "";
-    if (longest_ms <= PAUSE_MS || device->silences + device->noises > 0) {
+    if (longest_ms <= PAUSE_MS || was_lost(device)) {
         return;
     }
     if (2 * device->absent_ms > longest_ms) {
@@ -356,6 +361,8 @@ static void judge_speed(check_t *check)
                "no revolution was completed");
     } else if ((faults & TMINI_FAULT_ENCODER) != 0) {
         return; /* The rotor is blocked, which has been reported. */
+    } else if (speed_chz < set_chz && check->full_speed_ms != 0 && was_lost(check->device)) {
+        return; /* The motor may be coming up again. */
     } else if (set_chz == 0) {
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
