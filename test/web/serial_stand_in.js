@@ -16,7 +16,9 @@
 //     bench.writeError()                   the next write fails, the port stays open
 //     bench.answers = (code) => …          whether the lidar receives this command
 
-const bench = { choice: 'port', opening: null, line: 'good', baudRate: 0, written: [], opened: [], answers: () => true };
+const bench = {
+    choice: 'port', opening: null, line: 'good', baudRate: 0, written: [], opened: [], answers: () => true,
+};
 
 const PORTION = 64; // Bytes per USB packet.
 
