@@ -356,18 +356,17 @@ static void judge_speed(check_t *check)
     const unsigned speed_chz = check->speed_chz;
     const unsigned off_chz = set_chz > speed_chz ? set_chz - speed_chz : speed_chz - set_chz;
     const unsigned percent = set_chz > 0 ? off_chz * 100 / set_chz : 0;
-    /* The motor comes up again after a loss, or it is blocked, which has been reported. */
-    const bool comes_up = speed_chz < set_chz && check->full_speed_ms != 0;
-    const bool is_known = (faults & TMINI_FAULT_ENCODER) != 0;
+    const bool is_slow = speed_chz < set_chz;
+    const bool is_blocked = (faults & TMINI_FAULT_ENCODER) != 0; /* This has been reported. */
+    const bool comes_up = is_slow && check->full_speed_ms != 0 && was_lost(check->device);
     if (speed_chz == 0) {
         answer(check, BAD, "frequency", "does it turn? Is something in its way?",
                "no revolution was completed");
-    } else if (is_known || (comes_up && was_lost(check->device))) {
+    } else if (is_blocked || comes_up) {
         return;
     } else if (set_chz == 0) {
         answer(check, GOOD, "frequency", NULL, "%.1f Hz measured", speed_chz / 100.0);
     } else {
-        const bool is_slow = speed_chz < set_chz;
         const grade_t how = grade(percent > SPEED_PERCENT, percent > SPEED_REMARK_PERCENT);
         answer(check, how, "frequency",
                is_slow ? "the supply may be weak, or something may brake the rotor"
