@@ -672,6 +672,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(a_reboot_forgets_a_reply_that_is_due, ">90 >40 +5000 bytes:0"),
     ROW(losing_power_cuts_a_packet_in_the_middle,
         "scan:1 inside forget power:0 +5000 bytes:0 @off power:1 @booting +2500 @idle >0D got:600"),
+    ROW(losing_power_forgets_a_late_command_and_half_of_one,
+        "spoil:command:late5000 >0B <A5 power:0 power:1 +4000 <0D +2000 bytes:0 hz:600"),
     ROW(commands_wait_for_a_late_one_and_keep_their_order,
         "spoil:command:late700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
         "=A55A0400000004B2020000 end"),
