@@ -176,6 +176,11 @@ def test_a_lidar_that_sends_nothing_leaves_no_file(talker, fails):
     assert not os.path.exists("empty.bin")
 
 
+def test_a_recording_of_a_few_bytes_counts_them_all(talker, tmini):
+    run = tmini("record", "-p", talker(b"\xAA", 0x65), "few.bin", "-s1")  # One for each stop.
+    assert f" s, {os.path.getsize('few.bin')} bytes; scans: " in run.err
+
+
 def test_all_bytes_of_another_unit_are_recorded(folder, start, talker, tmini):
     start("--write", "four.bin", "--seconds", "2", "--samples", "4", program=os.environ["TMINI_SIM"]).finish()
     sent = (folder / "four.bin").read_bytes()
