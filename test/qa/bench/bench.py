@@ -16,6 +16,9 @@ import platform
 import re
 import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "host"))  # lidar_bytes
+
+# pylint: disable=wrong-import-position
 import flash
 import host
 import instructions

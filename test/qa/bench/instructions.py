@@ -9,6 +9,7 @@ import flash
 import load
 import worst
 from emulator import Machine
+from lidar_bytes import INFORMATION
 from targets import HERE, ROOT, BenchError
 
 RX_SIZE = 1024
@@ -31,7 +32,9 @@ def event_names():
 
 
 class FakeLidar:
-    """Answers commands as in section 4."""
+    """Replies to commands as in section 4, at once, and sends no packet: a session is fed its streams apart. The
+    simulated lidar has a time and a rotor of its own, so that what is measured would not be the same bytes each time.
+    """
 
     def __init__(self):
         self.frequency_chz = 600
@@ -43,8 +46,7 @@ class FakeLidar:
         if command == START:
             return SCAN_REPLY
         if command == INFO:
-            return bytes.fromhex("A5 5A 14 00 00 00 04 97 02 01 01"
-                                 "02 00 02 04 00 05 00 04 00 00 01 02 03 04 05 06")
+            return INFORMATION
         if command == HEALTH:
             return bytes.fromhex("A5 5A 03 00 00 00 06 00 00 00")
         self.frequency_chz += STEPS_CHZ.get(command, 0)

@@ -3,12 +3,8 @@
 
 """Makes the streams for the measurements: turns of the simulated lidar at 6 Hz."""
 
-import sys
-
+from lidar_bytes import decode
 from targets import ROOT, run
-
-sys.path.append(str(ROOT / "test" / "host"))
-from lidar_bytes import decode  # pylint: disable=wrong-import-position
 
 TURNS = 20
 SPIN_UP = 2  # The first turns, which are not of 6 Hz.

@@ -9,24 +9,12 @@ begin its largest packet just before the limit.
 
 import random
 
+from lidar_bytes import packet
+
 SIZE = 4096  # The largest ring in the tables.
 TRIALS = 1200
 STARTS = 12  # First mixes; each gets an equal share of the trials.
 MS = (1, 10, 100)
-
-
-def packet(samples, first_q6, last_q6, *, is_start=False, sample=bytes(3)):
-    """A valid scan packet (section 5)."""
-    head = bytes([0xAA, 0x55, is_start, samples])
-    angles = (first_q6 << 1 | 1).to_bytes(2, "little") + (last_q6 << 1 | 1).to_bytes(2, "little")
-    body = sample * samples
-    words = head + angles
-    sums = [0, 0]
-    for at, byte in enumerate(words):
-        sums[at % 2] ^= byte
-    for at, byte in enumerate(body):
-        sums[at % 3 == 2] ^= byte
-    return words + bytes(sums) + body
 
 
 def points(parameter):
@@ -35,7 +23,7 @@ def points(parameter):
     samples = 1 + parameter % 80
     first = 6400
     last = first if samples == 1 else first - 1
-    return packet(samples, first, last, sample=b"\x01\x57\xAA" if parameter >= 80 else bytes(3))
+    return packet([(10901, 1, 3) if parameter >= 80 else (0, 0, 0)] * samples, first, last)
 
 
 def header(parameter):
@@ -83,7 +71,7 @@ def changed(mix, source):
 
 def stream_of(mix):
     """A mix as bytes. It begins with a start packet, so that the scan has room for points."""
-    stream = packet(1, 0, 0, is_start=True)
+    stream = packet([(0, 0, 0)], 0, 0, ct=1)
     for name, parameter, count in mix[2]:
         stream += INGREDIENTS[name](parameter) * count
     return stream.ljust(SIZE, b"\0")[:SIZE]
