@@ -97,12 +97,15 @@ class Clock:
 
     def wait_for_block(self, pid):
         """Until the program waits elsewhere than in poll(), for which the clock stands."""
-        while True:
+        state, stands = "", False
+        while not (stands and state == "S"):
             try:
                 self.wait([], 1000, patience_s=0.1)
+                stands = False
             except OSError:
-                if Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(") ")[1][0] == "S":
-                    return
+                stands = True
+            state = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(") ")[1][0]
+            assert state != "Z", "the program has ended"
 
 
 class Watched:
