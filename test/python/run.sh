@@ -31,5 +31,6 @@ if ! cmp -s "$here/extras.txt" "$folder/venv/extras.txt"; then
         echo "the extras' packages are not available: their tests are skipped"
 fi
 cd "$here"
-# Four at a time, because they mostly wait for a lidar's motor.
-exec "$python" -m pytest -q -p no:cacheprovider -n 4 "$@"
+# Four at a time, because they mostly wait for a lidar's motor. A test that hangs fails.
+exec "$python" -m pytest -q -p no:cacheprovider -n 4 -o faulthandler_timeout=120 \
+    -o faulthandler_exit_on_timeout=true "$@"
