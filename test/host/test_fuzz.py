@@ -5,13 +5,14 @@
 tmini-sim, and exit status and message are the right ones. What a command accepts is read from its help, as a person
 does.
 
-TMINI_FUZZ: how many command lines; SEED: of all that is random."""
+TMINI_FUZZ: how many command lines; SEED: of all that is random, the date unless given: each day tries others."""
 
 import json
 import os
 import random
 import re
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from conftest import TMINI, TMINI_SIM
 from lidar_bytes import damaged
 
 LINES = int(os.environ.get("TMINI_FUZZ", 2000))
-SEED = int(os.environ.get("SEED", 1))
+SEED = int(os.environ.get("SEED", time.strftime("%Y%m%d")))
 
 # Values of options, by their names in the help: right ones and wrong ones.
 VALUES = {
