@@ -678,6 +678,8 @@ static const row_t rows[] IN_FLASH = {
         "spoil:command:late700 >0B >0A +699 bytes:0 +20 bytes:22 =A55A0400000004BC020000 "
         "=A55A0400000004B2020000 end"),
     ROW(replies_wait_for_a_late_one, "spoil:reply:late700 >0B >0A +700 bytes:0 +20 bytes:22"),
+    ROW(each_reply_can_be_spoilt_also_where_a_late_one_was_kept,
+        "spoil:reply:late100 >0D +200 3( >0D +50 ) forget spoil:reply:lost >0D +50 bytes:0"),
     ROW(a_scan_that_loses_its_beginning_does_not_begin_and_another_start_is_obeyed,
         "spoil:beginning:lost >60 +2000 bytes:7 @idle scan:1 packets>90"),
     ROW(start_packets_are_missing_until_it_boots,
@@ -745,6 +747,8 @@ static const row_t rows[] IN_FLASH = {
         "insert:1000 >60 +60000 begun.insert>679 begun.insert<881 truth unaccounted:0"),
     ROW(bursts_spoil_the_packets_they_touch,
         "burst:500 >60 +60000 begun.burst>79 begun.burst<161 truth spoilt>0 unaccounted:0"),
+    ROW(a_silent_line_has_no_bursts_and_cuts,
+        "burst:100 cut:100 +20000 begun.burst:0 begun.cut:0"),
     ROW(a_burst_ends_after_the_bytes_given,
         "latency:20 >92 force:burst:3 +100 ended.burst:1 last_fault:20131 bytes:10"),
     ROW(a_cut_loses_the_rest_of_one_packet,
