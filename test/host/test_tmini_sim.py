@@ -4,6 +4,7 @@
 """The program tmini-sim from outside: usage, pseudo-terminal, socket, lines, recordings."""
 
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -72,15 +73,25 @@ def test_options_may_be_short_joined_and_abbreviated(sim, words):
 
 
 @pytest.mark.parametrize("words", [
-    "", "--what", "--pty --tcp 0", "--tcp", "--tcp 70000", "--pty --frequency 4.9", "--pty --frequency fast",
-    "--pty --fault drop", "--pty --fault dropp=1e-4", "--pty --fault drop=2", "--pty --speed 0", "--pty --seed -1",
-    "--pty --health 0x40", "--pty --health -1", "--pty --health ill", "--write /dev/null", "--pty=yes", "--pty word",
-    "--s 1",  # --samples, --seed, --seconds, --speed, --spin-up
-    "--pty --motor 0", "--pty --bridge x", "--pty --begin x",
-    "--pty --spin-up 61", "--write - --seconds 1 --log", "--lines --pty", "--lines --log -"])
+    "", "--what", "--pty --tcp 0", "--tcp", "--tcp 70000", "--pty --frequency fast", "--pty --fault drop",
+    "--pty --fault dropp=1e-4", "--pty --fault drop=2", "--pty --seed -1", "--pty --health ill", "--write /dev/null",
+    "--pty=yes", "--pty word", "--s 1",  # --samples, --seed, --seconds, --speed, --spin-up
+    "--pty --bridge x", "--pty --begin x", "--write - --seconds 1 --log", "--lines --pty", "--lines --log -"])
 def test_wrong_usage_is_exit_status_2(sim, words):
     run = sim(*words.split()).finish()
     assert run.status == 2 and run.err.startswith("tmini-sim: ")
+
+
+def test_numbers_have_the_limits_that_the_help_names(sim):
+    texts = re.split(r"^ +(?:-., )?--", sim("--help").finish().out, flags=re.MULTILINE)
+    limits = [(text.split()[0], *found.groups()) for text in texts
+              if (found := re.search(r"(-?[\d.]+) to (0x[\dA-F]+|[\d.]+)", text))]
+    assert len(limits) == 8
+    for name, low, high in limits:
+        low, high = float(low), float(high) if "x" not in high else int(high, 0)
+        for value, status in ((low, 0), (high, 0), (low - 0.0005, 2), (high + 0.01, 2)):
+            run = sim("--write", "/dev/null", "--seconds=0.001", f"--{name}={value}").finish()
+            assert run.status == status, f"--{name}={value}: {run.err}"
 
 
 @pytest.mark.parametrize("words", [
