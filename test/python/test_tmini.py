@@ -79,10 +79,12 @@ def test_damage_of_a_recording_is_reported_and_the_rest_read(dropped, said, tmp_
 
 
 @pytest.mark.filterwarnings("ignore:.* is damaged in:RuntimeWarning")
-@pytest.mark.parametrize("seeds", [range(at, at + 20) for at in range(0, 300, 20)])
-def test_a_recording_with_random_damage_gives_what_the_tool_gives_or_an_error(tmp_path, seeds):
+@pytest.mark.parametrize("part", range(15))
+def test_a_recording_with_random_damage_gives_what_the_tool_gives_or_an_error(tmp_path, part):
+    """Each day other recordings, unless SEED is given, which the messages name."""
     path, content = tmp_path / "some", (RECORDINGS / "sim-6hz.bin").read_bytes()
-    for seed in seeds:
+    for number in range(20 * part, 20 * part + 20):
+        seed = int(os.environ.get("SEED", time.strftime("%Y%m%d"))) * 1000 + number
         draw = random.Random(seed)
         cut = content[:draw.randint(10, 9000)]
         cut = draw.choice([cut, chunked(cut, 1), chunked(cut, 2)])  # The beginning that marks a timed one stays.
@@ -102,14 +104,6 @@ def test_what_is_no_recording_of_a_lidar_is_reported(tmp_path):
         path.write_bytes(content)
         with pytest.raises(ValueError, match=words):
             list(tmini.read(path))
-
-
-def test_a_minute_of_recording_takes_a_sixth_of_a_second(tmp_path):
-    path = tmp_path / "minute.bin"
-    subprocess.run([SIM, "--write", path, "--seconds", "60"], check=True)
-    begun = time.process_time()
-    assert sum(scan.complete for scan in tmini.read(path)) > 340
-    assert time.process_time() - begun < 10 / 60
 
 
 def test_angles_of_ros_count_the_other_way_round():
