@@ -49,13 +49,14 @@ PLACES = [
     ("port/arduino/|examples/esp32_arduino/", "-R ^test_arduino", 1),
     ("(?:port|examples)/(freertos|pico|zephyr|template)/", "-R ^test_(port|device|example)_{0}", 1),
     ("port/ros2/|examples/micro_ros/", "-R ^test_(laser|ros_.*|example_scan_node)$", 1),
-    ("port/python/tmini/", "-R ^python$", 2),
+    ("port/python/(?:tmini/|native.c)", "-R ^python$", 2),
     ("examples/mavlink/", "-R ^mavlink$", 1),
-    ("examples/web/page/", "-L ^browser$", 2),
+    ("examples/web/(?:page|wasm)/", "-L ^browser$", 2),
+    ("examples/bridge/main/web", "-R ^test_bridge_web$", 1),
     ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$", 2),
     ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$", 2),
     ("test/simulator/", "-R ^(test_simulator|host[.].*)$", 2),
-    ("examples/(host|bridge)/", "-L ^host$", 2),
+    ("examples/(host|common|decoder_only|bridge/(core|pc))/", "-L ^host$", 2),
 ]
 
 # Patterns and their replacements: operators and constants that programmers often confuse.
@@ -288,8 +289,9 @@ class Copy:
         return [f"{name}:{function}" for name in failed for function in functions[name] or ["*"]]
 
     def optimised(self, path):
-        """The machine code of a source, or of all that may include a header."""
-        wanted = lambda file: file.startswith(("lib/src", "test/unit")) if path.endswith(".h") else file == path
+        """The machine code of a source, or of all that may include a header. Empty: nothing here compiles it."""
+        near = ("lib/src", "test/unit", os.path.dirname(path), "test/" + os.path.dirname(path))
+        wanted = lambda file: file.startswith(near) if path.endswith(".h") else file == path
         found = []
         for entry in self.commands:
             file = os.path.relpath(os.path.realpath(entry["file"]), self.root)
@@ -308,7 +310,8 @@ class Copy:
             file.write_text(original, encoding="utf-8")
             self.original_code[mutant.path] = self.optimised(mutant.path)
             file.write_text(mutant.text, encoding="utf-8")
-        return self.optimised(mutant.path) == self.original_code[mutant.path]
+        code = self.optimised(mutant.path)
+        return bool(code) and code == self.original_code[mutant.path]
 
     def fate(self, mutant):
         """Returns 'killed by …', 'survived', 'the same code' or 'not C'."""
