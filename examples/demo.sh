@@ -40,17 +40,18 @@ show() {
     "$tmini" "$@"
 }
 
-# Starts the simulated lidar; its first line of output names the port.
+# Starts the simulated lidar; its first line of output names the port. It ends if there is none.
 start_lidar() {
     "$build/bin/tmini-sim" --pty >"$build/lidar.port" &
     lidar=$!
     trap 'kill "$lidar" 2>/dev/null || true' EXIT
     trap 'exit 1' INT TERM HUP PIPE
-    for _ in 1 2 3 4 5 6 7 8 9 10; do
+    while kill -0 "$lidar" 2>/dev/null; do
         port=$(head -n 1 "$build/lidar.port")
         [ -z "$port" ] || return 0
-        sleep 0.2
+        sleep 0.1
     done
+    wait "$lidar" || [ $? -eq 1 ] || exit 1 # 1: an error that it has reported.
     return 1
 }
 
