@@ -15,7 +15,7 @@ import argparse
 import re
 import subprocess
 import sys
-import time
+import threading
 
 INFO = re.compile(r"model 151, firmware \d+\.\d+, hardware 1, serial \d{16}")
 LINE = re.compile(r"(\d+) scans, .* lost: (\d+) checksums, (\d+) bytes, (\d+) gaps")
@@ -30,17 +30,19 @@ def run(args):
         [args.qemu, "-M", "lm3s6965evb", "-display", "none", "-monitor", "none", "-serial", "stdio",
          "-serial", f"tcp:{address}", "-kernel", args.firmware],
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    watchdog = threading.Timer(MOST_SECONDS, qemu.kill)
+    watchdog.start()
     try:
         return watch(qemu, args.scans)
     finally:
+        watchdog.cancel()
         for process in (qemu, sim):
             process.kill()
             process.wait()
 
 
 def watch(qemu, scans):
-    """Waits for a console line with this many scans. Returns its numbers of losses; None if it comes too late."""
-    end = time.monotonic() + MOST_SECONDS
+    """Waits for a console line with this many scans. Returns its numbers of losses; None if the console ends first."""
     has_info = False
     for line in qemu.stdout:
         text = line.decode("ascii", "replace").strip()
@@ -49,8 +51,6 @@ def watch(qemu, scans):
         numbers = LINE.search(text)
         if numbers is not None and int(numbers[1]) >= scans:
             return [int(number) for number in numbers.groups()[1:]] if has_info else None
-        if time.monotonic() > end:
-            break
     return None
 
 
