@@ -168,7 +168,7 @@ bool like_read(options_t *options, const char *path)
     while (is_good && fgets(line, sizeof line, file) != NULL) {
         char key[40];
         char value[120];
-        if (line[0] != '#' && sscanf(line, "%39s = %119[^\n]", key, value) == 2) {
+        if (sscanf(line, "%39s = %119[^\n]", key, value) == 2) {
             is_good = like_set(options, key, value);
             is_report = true;
         }

@@ -43,6 +43,7 @@ static size_t fate_count;
 static struct {
     unsigned begun[SIM_LINK_KINDS];
     unsigned ended[SIM_LINK_KINDS];
+    unsigned partial; /* Packets of a revolution that began at another angle than usual. */
 } heard;
 
 /* Spoils the first event of the kind; how many there have been. */
@@ -61,6 +62,7 @@ static void hear_packet(void *context, const sim_link_packet_t *packet)
     fates[fate_count].packet = *packet;
     memcpy(fates[fate_count].bytes, packet->sent.bytes, packet->sent.length);
     fate_count++;
+    heard.partial += packet->sent.is_of_partial ? 1u : 0u;
 }
 
 static void hear_fault(void *context, sim_link_kind_t kind, bool begins, uint64_t at_us)
@@ -337,6 +339,7 @@ static bool is_fact(const char *word)
         {"uneven", is.hz},
         {"before", is.before},
         {"first_off", packet_count > 0 ? apart_q6(packets[0].fsa >> 1, config.first_angle_q6) : 0},
+        {"partial", heard.partial},
         {"first_ct", packet_count > 0 ? packets[0].ct : 0},
         {"turned",
          packet_count > 0 ? (uint32_t)(packets[packet_count - 1u].lsa - packets[0].fsa) : 0u},
@@ -721,7 +724,8 @@ static const row_t rows[] IN_FLASH = {
     ROW(the_first_packets_may_pass_the_start_packets_place_without_one,
         "beginning:1 first_angle:21101 >60 +1500 first_off<4 before>667 start_off<65"),
     ROW(the_first_packet_may_be_a_start_packet_anywhere_at_2_4_hz,
-        "beginning:2 first_angle:5485 >60 +1500 first_off<4 before:0 first_ct:0x31 start_off<65"),
+        "beginning:2 first_angle:5485 >60 +1500 first_off<4 before:0 first_ct:0x31 start_off<65 "
+        "partial>15 partial<60"),
     ROW(last_crc_guards_the_ct_bytes_of_every_revolution, "scan:20 starts>100 wrong_crc:0"),
     ROW(last_crc_is_sometimes_aa, "frequency:1200 scan:120 aa>0 checksum_errors:0"),
     ROW(a_unit_without_ct_information_sends_neither_ct_nor_last_crc,
