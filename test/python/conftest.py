@@ -83,7 +83,8 @@ def command():
     def start(*words, first="pass"):
         program = f"import runpy; {first}; runpy.run_module('tmini', run_name='__main__')"
         started.append(subprocess.Popen([sys.executable, "-c", program, *map(str, words)], text=True,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE))
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        env={**os.environ, "PYTHONUNBUFFERED": ""}))
         return started[-1]
 
     yield start

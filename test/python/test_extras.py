@@ -7,6 +7,7 @@ import io
 import itertools
 import json
 import math
+import re
 import signal
 import struct
 import subprocess
@@ -20,6 +21,7 @@ import pytest
 import tmini
 from conftest import RECORDINGS, SIM
 from lidar_bytes import packet
+from tmini.__main__ import _parser
 from tmini._command import scans_of
 from tmini._laser import Laser
 from tmini._scan import POINT
@@ -237,6 +239,13 @@ def test_without_its_extra_a_command_names_the_line_that_installs_it(run, monkey
 def test_wrong_words_are_answered_in_a_sentence(run, words, said):
     status, _, error = run(*words.split())
     assert status == 2 and said in error
+
+
+def test_defaults_are_those_that_the_help_names():
+    commands = _parser()._subparsers._group_actions[0].choices.values()
+    pairs = [(str(action.default), re.search(r"default: (.*)\)", action.help)[1]) for command in commands
+             for action in command._actions if "default: " in action.help]
+    assert len(pairs) == 5 and all(is_value == said for is_value, said in pairs)
 
 
 def test_a_lidar_that_is_not_there_is_answered_in_a_sentence(run, tmp_path):

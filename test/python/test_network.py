@@ -374,6 +374,17 @@ def test_a_slow_listener_loses_all_that_waits_and_is_told_so():
         chunk(0, b"first"), chunk(41000, b"") + chunk(0, bytes([32]) * 1000))
 
 
+def test_who_sends_more_than_a_request_and_answers_to_our_pings_is_left():
+    from tmini._serve import _Guard
+    heard, left = [], []
+    guard = _Guard(SimpleNamespace(data_received=heard.append))
+    guard._transport, guard._since = SimpleNamespace(abort=lambda: left.append(1)), time.monotonic() - 10
+    guard.data_received(bytes(17000))
+    assert len(heard) == 1 and not left
+    guard.data_received(bytes(1000))
+    assert len(heard) == 1 and left
+
+
 @pytest.mark.parametrize("waiting, resumes, is_left", [
     pytest.param(*row, id=claim) for claim, row in {
         "who_takes_nothing_is_left": ([5, 5], False, True),
