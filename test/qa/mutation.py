@@ -4,7 +4,7 @@
 
 """Changes the sources in one small place at a time, and checks that a test notices the change.
 
-    mutation.py [--sample N [--seed S]] [--results FILE] [--killers] [--work DIR] [--list] [FILE …]
+    mutation.py [--sample N [--seed S]] [--results FILE] [--killers] [--work DIR] [FILE …]
 
 FILE is a source or a folder of sources: of the library (lib/src unless given), a port, an example, the simulated
 lidar, the Python package, the viewer. PLACES says which tests must notice a change there.
@@ -55,6 +55,7 @@ PLACES = [
     ("examples/bridge/main/web", "-R ^test_bridge_web$", 1),
     ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$", 2),
     ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$", 2),
+    ("test/simulator/sim_judge", "-R ^(test_programs|test_stamps)$", 1),
     ("test/simulator/", "-R ^(test_simulator|host[.].*)$", 2),
     ("examples/(host|common|decoder_only|bridge/(core|pc))/", "-L ^host$", 2),
 ]
@@ -418,7 +419,6 @@ def main():
     parser.add_argument("--killers", action="store_true", help="runs all tests, and says which alone noticed mutants")
     parser.add_argument("--work", type=Path, default=ROOT / "build-mutation", help="the folder of the copy")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
-    parser.add_argument("--list", action="store_true", help="only prints the mutants")
     parser.add_argument("--known", action="store_true", help="only looks for what is no longer a mutant")
     parser.add_argument("files", nargs="*", metavar="FILE", default=[ROOT / "lib" / "src"])
     arguments = parser.parse_args()
@@ -433,9 +433,6 @@ def main():
         parser.error(f"nothing to change in {' '.join(map(str, arguments.files))}")
     if arguments.sample:  # By hash: a changed line does not change the rest of the sample.
         mutants.sort(key=lambda mutant: hashlib.sha256(f"{arguments.seed} {mutant.key}".encode()).digest())
-    if arguments.list:
-        print(*mutants, f"{len(mutants)} mutants", sep="\n")
-        return
     copy, results = Copy(arguments.work, arguments.jobs, arguments.killers), Results(arguments.results)
     survivors, needed = try_mutants(mutants, arguments.sample or len(mutants), copy, results, known)
     if arguments.killers:
