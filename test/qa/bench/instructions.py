@@ -21,6 +21,7 @@ BYTES_PER_POLL = (1, 4, 13, 64, 131, 512)
 FALSE_HEADERS = bytes([0xAA, 0x55, 0, 80, 1, 1, 1, 1, 1, 1]) * 102
 SCAN_REPLY = bytes.fromhex("A5 5A 05 00 00 40 81")
 START, STOP, INFO, HEALTH, REBOOT = 0x60, 0x65, 0x90, 0x92, 0x40
+REPLIES = {START: SCAN_REPLY, INFO: INFORMATION, HEALTH: bytes.fromhex("A5 5A 03 00 00 00 06 00 00 00")}
 STEPS_CHZ = {0x09: 10, 0x0A: -10, 0x0B: 100, 0x0C: -100}
 
 
@@ -43,12 +44,8 @@ class FakeLidar:
     def reply_to(self, command):
         if not self.answers or command in (0, STOP, REBOOT):
             return b""
-        if command == START:
-            return SCAN_REPLY
-        if command == INFO:
-            return INFORMATION
-        if command == HEALTH:
-            return bytes.fromhex("A5 5A 03 00 00 00 06 00 00 00")
+        if command in REPLIES:
+            return REPLIES[command]
         self.frequency_chz += STEPS_CHZ.get(command, 0)
         return bytes.fromhex("A5 5A 04 00 00 00 04") + self.frequency_chz.to_bytes(4, "little")
 
