@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""Finds and parses the project's documents, for the checks in this folder."""
+"""Finds and parses the project's documents, for the checks in this folder. Debian's link checkers read HTML, and know
+nothing of the anchors of headings."""
 
 import re
 import sys
