@@ -4,8 +4,8 @@
 /* A clock for programs that wait for each other: the tool, the simulated lidar, and the test
  * itself. It stands still while one of them works, and jumps to the next moment for which one waits
  * when all of them wait in vain. So a busy computer changes nothing, and idle time costs nothing.
- * To be preloaded; conftest.py loads it into the test, too. A library such as libfaketime gives each
- * program a clock of its own, which runs on while another one works.
+ * To be preloaded; conftest.py loads it into the test, too. A library such as libfaketime gives
+ * each program a clock of its own, which runs on while another one works.
  *
  * The programs share a file, named by TMINI_SHARED_CLOCK. It holds the time, and until when each
  * program waits in poll(). The clock jumps when each of them has looked for input in vain after the

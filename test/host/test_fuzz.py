@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 The tmini authors
 
-"""All options of all commands (but `ports`, which would ask real adapters), and random command lines, recordings and reports: no signal ever ends the tool or
-tmini-sim, and exit status and message are the right ones. What a command accepts is read from its help, as a person
-does.
+"""All options of all commands (but `ports`, which would ask real adapters), and random command lines, recordings and
+reports: no signal ever ends the tool or tmini-sim, and exit status and message are the right ones. What a command
+accepts is read from its help, as a person does.
 
 TMINI_FUZZ: how many command lines; SEED: of all that is random, the date unless given: each day tries others."""
 
