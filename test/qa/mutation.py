@@ -217,7 +217,7 @@ def run(*words, folder=None, seconds=1800):
     def limit():
         os.setpgrp()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (10, 10))  # Of a process: a loop may never end.
+        resource.setrlimit(resource.RLIMIT_CPU, (30, 30))  # Of a process: a loop may never end.
 
     with subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace", preexec_fn=limit) as process:
