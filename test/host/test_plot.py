@@ -142,8 +142,8 @@ def test_front_is_up_and_angles_go_clockwise(plot, folder):
 def test_interference_and_the_nearest_point_are_marked(plot, folder):
     svg, _ = plot(cross(2, 3), "--scan", "1")
     assert rings(svg, 600 + 250, 690, 7.4) == 1  # Flag 2: a ring.
-    # Flag 3: a cross of two lines, 3 m to the back.
-    assert svg.count("M 594 1059 L 606 1071") == svg.count("M 594 1071 L 606 1059") == 1
+    assert svg.count("M 594 1059 L 606 1071") == svg.count("M 594 1071 L 606 1059") == 1  # Flag 3: a cross, behind.
+    assert len(re.findall(r'x="(?:4[89]|5\d|6[0-3])\d[.\d]*" y="1290"', svg)) == len("specular (1)")
     assert rings(svg, 600, 690 - 125, 12) == 1  # The nearest point.
 
 
