@@ -64,7 +64,7 @@ def test_of_a_recording_is_shown_what_the_tool_decodes(page, tmp_path, name, con
     page.type("file", path)
     page.wait_text("source", name)
     saved, table = page.save("save-csv")
-    assert re.fullmatch(r"tmini-points-[\d-]+\.csv", saved) and table.decode() == rows
+    assert re.fullmatch(r"tmini-points-\d{4}-\d\d-\d\d-\d{6}\.csv", saved) and table.decode() == rows
     page.set("position", page.run("return document.querySelector('#position').max"))
     page.play(f"packets = {stats['packets']}; bytes = {stats['bytes']}; scans = {stats['start_packets']}; "
               f"checksums = {stats['checksum_errors']}; {then}")
