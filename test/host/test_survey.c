@@ -190,8 +190,8 @@ static const row_t reports[] = {
     ROW(a_turn_that_begins_without_a_start_packet_is_reported,
         "first_packets = unmarked; first_angle_deg = 330 > first_packets = unmarked;"
         " first_angle_deg = 330"),
-    ROW(without_lone_packets_the_report_says_unknown,
-        "lone_packets = no > lone_packets = unknown"),
+    ROW(without_lone_packets_it_says_so, "lone_packets = no > lone_packets = unknown"),
+    ROW(without_an_answer_after_the_reboot, "boot_ms = 60000 > frequency_survives = unknown"),
 };
 /* clang-format on */
 
