@@ -55,7 +55,7 @@ PLACES = [
     ("examples/bridge/main/web", "-R ^test_bridge_web$", 1),
     ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$", 2),
     ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$", 2),
-    ("test/simulator/sim_judge", "-R ^(test_programs|test_stamps)$", 1),
+    ("test/simulator/sim_judge", "-R ^(test_simulator|test_programs|test_stamps)$", 1),
     ("test/simulator/", "-R ^(test_simulator|host[.].*)$", 2),
     ("examples/(host|common|decoder_only|bridge/(core|pc))/", "-L ^host$", 2),
 ]
