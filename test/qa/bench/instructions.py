@@ -33,9 +33,8 @@ def event_names():
 
 
 class FakeLidar:
-    """Replies to commands as in section 4, at once, and sends no packet: a session is fed its streams apart. The
-    simulated lidar has a time and a rotor of its own, so that what is measured would not be the same bytes each time.
-    """
+    """Replies to commands as in section 4, at once, and sends no packet: each session is fed a stream of its own,
+    which the simulated lidar's time and rotor would change."""
 
     def __init__(self):
         self.frequency_chz = 600
