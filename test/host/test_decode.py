@@ -288,13 +288,11 @@ def test_without_a_format_a_person_gets_a_summary(tmini, name, lines):
     (3, 1, ", 1 stray byte between packets: about 1 packet damaged (25.0 %)\n"),
     (3, 194, ", 194 stray bytes between packets: about 1 packet damaged (25.0 %)\n"),
     (3, 195, ", 195 stray bytes between packets: about 2 packets damaged (40.0 %)\n"),
-    (3, 324, ": about 2 packets damaged (40.0 %)\n"),
-    (3, 325, ": about 3 packets damaged (50.0 %)\n"),
+    (3, 324, ": about 2 packets damaged (40.0 %)\n"), (3, 325, ": about 3 packets damaged (50.0 %)\n"),
     (665, 1, ": about 1 packet damaged (0.2 %)\n"),        # 1 of 666 is 0.1502 %.
     (666, 1, ": about 1 packet damaged (0.1 %)\n"),        # 1 of 667 is 0.1499 %.
     (1999, 1, ": about 1 packet damaged (0.1 %)\n"),       # 1 of 2000 is 0.05 %.
-    (2000, 1, ": about 1 packet damaged (under 0.1 %)\n"),
-    (2000, 0, ", 0 stray bytes between packets\n"),
+    (2000, 1, ": about 1 packet damaged (under 0.1 %)\n"), (2000, 0, ", 0 stray bytes between packets\n"),
 ])
 def test_the_bytes_of_a_gap_show_how_many_packets_are_damaged(tmini, folder, packets, gap, words):
     one = packet([(1000, 10, 0)], 224, 224)
@@ -459,10 +457,8 @@ def test_without_a_word_the_tool_lists_its_commands(tmini):
 
 
 @pytest.mark.parametrize("words", [
-    ["decode", ROOM, "--stats", "stats", "-q"],
-    ["decode", "-q", "--sta", "stats", ROOM],
-    ["-q", "--stats", "stats", "decode", ROOM],
-    ["--quiet", "decode", "--stat", "stats", "--", ROOM],
+    ["decode", ROOM, "--stats", "stats", "-q"], ["decode", "-q", "--sta", "stats", ROOM],
+    ["-q", "--stats", "stats", "decode", ROOM], ["--quiet", "decode", "--stat", "stats", "--", ROOM],
 ])
 def test_options_may_be_short_joined_abbreviated_and_anywhere(tmini, environment, monkeypatch, words):
     monkeypatch.setenv("POSIXLY_CORRECT", "1")  # Makes getopt() stop at the first operand.

@@ -24,19 +24,16 @@ SEED = int(os.environ.get("SEED", time.strftime("%Y%m%d")))
 
 # Values of options, by their names in the help: right ones and wrong ones.
 VALUES = {
-    "": ([""], []),
-    "N": (["1", "7", "80"], ["", "-1", "x", "1.5", "1e1", "0x7", "7 ", "99999999999999999999"]),
+    "": ([""], []), "N": (["1", "7", "80"], ["", "-1", "x", "1.5", "1e1", "0x7", "7 ", "99999999999999999999"]),
     "DEG": (["0", "90", "-90", "359.5"], ["", "x", "nan", "90x", "1e9"]),
-    "MM": (["0", "12", "-12"], ["", "x", "1e9"]),
-    "FROM:TO": (["10:20", "350:10"], ["", "10", "a:b", "10:20:30"]),
+    "MM": (["0", "12", "-12"], ["", "x", "1e9"]), "FROM:TO": (["10:20", "350:10"], ["", "10", "a:b", "10:20:30"]),
     "PORT": (["/dev/none"], []), "FILE": (["y.svg"], []),
 }
 
 # The words with which a command is complete; it then fails, because neither device nor file exist.
 COMPLETE = {
     "info": [], "health": [], "frequency": ["7.5"], "reboot": [], "scan": [], "check": [], "record": ["x.bin"],
-    "decode": ["nowhere.bin"], "plot": ["-o", "x.svg"], "view": [],
-    "survey": ["x.txt"], "calibrate": [],
+    "decode": ["nowhere.bin"], "plot": ["-o", "x.svg"], "view": [], "survey": ["x.txt"], "calibrate": [],
 }
 NEVER = {"help", "version", "wait"}  # Would end well, or never end.
 

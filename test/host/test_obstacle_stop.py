@@ -82,10 +82,8 @@ def test_a_lidar_that_does_not_answer_is_reported_and_started_again(talker, robo
 
 @pytest.mark.parametrize("words, status, output, errors", [
     ([], 2, "", "usage: obstacle_stop PORT, or obstacle_stop -p PORT\n"),
-    (["a", "b"], 2, "", "usage: obstacle_stop PORT"),
-    (["--vers"], 0, "obstacle_stop 1.", ""),
-    (["-h"], 0, "usage: obstacle_stop PORT", ""),
-    (["-p/dev/none"], 1, "", "/dev/none: no such device\n"),
+    (["a", "b"], 2, "", "usage: obstacle_stop PORT"), (["--vers"], 0, "obstacle_stop 1.", ""),
+    (["-h"], 0, "usage: obstacle_stop PORT", ""), (["-p/dev/none"], 1, "", "/dev/none: no such device\n"),
     (["/dev/none"], 1, "", "/dev/none: no such device\n"),
 ])
 def test_its_usage_and_a_wrong_port(robot, words, status, output, errors):

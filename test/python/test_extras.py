@@ -54,8 +54,7 @@ def nearest(scan, ray, half=0.499):
 
 
 @pytest.mark.parametrize("words, mount, begin_deg", [
-    ((), {}, 0),
-    (("--upside-down", "--mask", "95:110"), {"upside_down": True, "mask": [(95, 110)]}, 0),
+    ((), {}, 0), (("--upside-down", "--mask", "95:110"), {"upside_down": True, "mask": [(95, 110)]}, 0),
     (("--front", "90"), {"front": 90}, 90)], ids=["upright", "upside_down", "turned"])
 def test_a_recording_becomes_messages_however_the_lidar_is_mounted(run, room, words, mount, begin_deg):
     assert run("mcap", RECORDING, room, *words) == (0, f"{room}: 9 scans; 1 incomplete\n", "")

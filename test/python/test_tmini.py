@@ -42,8 +42,7 @@ def as_json(scan):
     return {
         "scan": scan.number, "time_ms": round(scan.start_s * 1000),
         "frequency_hz": scan.frequency_hz, "complete": scan.complete, "packets": scan.packets,
-        "gaps": scan.gaps, "dropped": scan.dropped, "checksum_errors": scan.checksum_errors,
-        "faults": scan.faults,
+        "gaps": scan.gaps, "dropped": scan.dropped, "checksum_errors": scan.checksum_errors, "faults": scan.faults,
         "points": [list(point) for point in zip(scan.angles_deg.tolist(), millimetres.tolist(),
                                                 scan.intensities.tolist(), scan.flags.tolist())],
     }
@@ -455,13 +454,11 @@ def test_a_port_that_is_not_there_is_an_error_or_waited_for(simulator):
 
 
 @pytest.mark.parametrize("arguments, options, error, words", [
-    (("x", 5.96), {}, ValueError, "6 to 12, not 5.96"),
-    (("x", 12.1), {}, ValueError, "6 to 12, not 12.1"),
+    (("x", 5.96), {}, ValueError, "6 to 12, not 5.96"), (("x", 12.1), {}, ValueError, "6 to 12, not 12.1"),
     (("x", float("nan")), {}, ValueError, "6 to 12, not nan"),
     (("x", 230400), {}, ValueError, "the baud rate is always 230400"),
     (("x", "10"), {}, TypeError, "a number of 6 to 12, not '10'"),
-    ((None,), {}, TypeError, 'such as "/dev/ttyUSB0", not None'),
-    (("x",), {"backlog": 0}, ValueError, "1 or more"),
+    ((None,), {}, TypeError, 'such as "/dev/ttyUSB0", not None'), (("x",), {"backlog": 0}, ValueError, "1 or more"),
     (("x", 10), {"listen_only": True}, ValueError, "cannot set frequency_hz"),
     (("tcp:robot",), {}, ValueError, "is tcp:HOST:PORT"),
 ])

@@ -26,8 +26,7 @@ DECODER_ONLY = ROOT / "examples" / "decoder_only" / "lidar_points.c"
 PROGRAMS = (
     ("parser", "parser + decoding", PARSER),
     ("points", "ring, parser and scan builder", ["lidar_points_init", "lidar_points_next", "lidar_points_byte"]),
-    ("streaming", "streaming, no scan buffer", STREAMING),
-    ("driver", "full driver", DRIVER),
+    ("streaming", "streaming, no scan buffer", STREAMING), ("driver", "full driver", DRIVER),
     ("no_ct", "the same without CT information", WITHOUT_CT),
     ("everything", "full driver + blocking helpers + sectors", EVERYTHING),
 )

@@ -10,13 +10,10 @@ from targets import HERE
 POINTS = 400
 # Modules of the table, what they need besides, and the functions of optional.c that use them.
 MODULES = (
-    ("tmini_mount", (), ("bench_mount",)),
-    ("tmini_steps", (), ("bench_steps",)),
+    ("tmini_mount", (), ("bench_mount",)), ("tmini_steps", (), ("bench_steps",)),
     ("tmini_fields", ("tmini_cartesian",), ("bench_fields", "bench_fields_near")),
-    ("tmini_isolated", (), ("bench_isolated",)),
-    ("tmini_cartesian", (), ("bench_cartesian",)),
-    ("tmini_sectors", (), ("bench_sectors",)),
-    ("tmini_ranges", (), ("bench_ranges",)),
+    ("tmini_isolated", (), ("bench_isolated",)), ("tmini_cartesian", (), ("bench_cartesian",)),
+    ("tmini_sectors", (), ("bench_sectors",)), ("tmini_ranges", (), ("bench_ranges",)),
     ("tmini_units", (), ("bench_units",)),
 )
 
