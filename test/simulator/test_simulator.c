@@ -8,7 +8,6 @@
 #include "link.h"
 #include "reference_decoder.h"
 #include "rows.h"
-#include "sim_judge.h"
 
 #include "unity.h"
 
@@ -278,44 +277,6 @@ static void expect_the_truth_about_every_packet(void)
         TEST_ASSERT_UINT_WITHIN(1, heard.begun[kind], heard.ended[kind]);
         TEST_ASSERT_EQUAL_UINT(heard.begun[kind], wire.counts.faults[kind]);
     }
-}
-
-/* ---- The judge ---- */
-
-static sim_judge_t judge;
-
-static unsigned lies_of(uint32_t from, uint32_t to, uint32_t without, bool complete, unsigned gaps)
-{
-    sim_reading_t reading = {0};
-    for (uint32_t place = from; place < to; place++) {
-        if (place != without) {
-            sim_read_point(&judge, &reading, sim_judge_sample(&judge, place)->point);
-        }
-    }
-    return sim_read_end(&judge, &reading, complete, gaps, 0);
-}
-
-void test_the_judge_sees_lies_and_no_others(void)
-{
-    uint32_t turns[100];
-    size_t count = 0;
-    config.marked = true;
-    power_up();
-    scan_seconds(2);
-    judge.is_guarded = true;
-    for (size_t i = 0; i < fate_count; i++) {
-        fates[i].packet.sent.bytes = fates[i].bytes;
-        const uint32_t place = sim_judge_sent(&judge, &fates[i].packet.sent);
-        turns[count] = place;
-        count += fates[i].packet.sent.starts_revolution ? 1u : 0u;
-    }
-    const uint32_t *const at = &turns[count - 8];
-    TEST_ASSERT_EQUAL_HEX(0, lies_of(at[0], at[1], 0, true, 0));
-    TEST_ASSERT_EQUAL_HEX(SIM_LIE(SIM_LIE_AGAIN), lies_of(at[0], at[1], at[0] + 300, false, 1));
-    TEST_ASSERT_EQUAL_HEX(SIM_LIE(SIM_LIE_MIXED), lies_of(at[1] + 9, at[2] + 9, 0, false, 1));
-    TEST_ASSERT_EQUAL_HEX(SIM_LIE(SIM_LIE_COMPLETE), lies_of(at[3], at[4], at[3] + 300, true, 1));
-    TEST_ASSERT_EQUAL_HEX(SIM_LIE(SIM_LIE_SILENT), lies_of(at[4], at[5] - 1, 0, false, 0));
-    TEST_ASSERT_EQUAL_HEX(0, lies_of(at[5], at[6], at[5] + 300, false, 1));
 }
 
 /* ---- Facts ---- */
