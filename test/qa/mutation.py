@@ -55,7 +55,7 @@ PLACES = [
     ("examples/bridge/main/web", "-R ^test_bridge_web$", 1),
     ("examples/obstacle_stop/", "-R ^(test_obstacle|host.obstacle_stop)$", 2),
     ("port/posix/", "-R ^(test_port_posix|test_timed|host[.].*)$", 2),
-    ("test/simulator/sim_judge", "-R ^(test_simulator|test_programs|test_stamps)$", 1),
+    ("test/simulator/sim_judge", "-R ^(test_judge|test_programs|test_stamps)$", 1),
     ("test/simulator/", "-R ^(test_simulator|host[.].*)$", 2),
     ("examples/(host|common|decoder_only|bridge/(core|pc))/", "-L ^host$", 2),
 ]
@@ -212,12 +212,13 @@ def place_of(path):
 
 # ---- Trying them ----
 
-def run(*words, folder=None, seconds=1800):
-    """Exit status and output. What it has started is ended with it, or after `seconds`."""
+def run(*words, folder=None, seconds=1800, cpu_s=10):
+    """Exit status and output. What it has started is ended with it, or after `seconds`; a process of it also after
+    `cpu_s` of the processor's time: a loop may never end."""
     def limit():
         os.setpgrp()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (30, 30))  # Of a process: a loop may never end.
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s))
 
     with subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace", preexec_fn=limit) as process:
@@ -281,7 +282,7 @@ class Copy:
         more = ["--repeat", f"until-pass:{tries}"] if tries > 1 else []
         more += [] if self.are_all_wanted else ["--stop-on-failure"]
         output, _ = run("ctest", "--test-dir", self.build, "-C", "All", "-j", self.jobs, "--output-on-failure",
-                        "-R", f"^({'|'.join(map(re.escape, tests))})$", *more)
+                        "-R", f"^({'|'.join(map(re.escape, tests))})$", *more, cpu_s=30 if tries > 1 else 10)
         functions = collections.defaultdict(list)
         for name, text in re.findall(r"^ *\d+/\d+ Test +#\d+: (\S+) (.*?)(?=^ *\d+/\d+ Test|^\d+% tests)", output,
                                      re.DOTALL | re.MULTILINE):
