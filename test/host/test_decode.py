@@ -428,7 +428,7 @@ def test_a_long_recording_is_decoded_in_constant_memory(folder):
 
 
 @pytest.mark.parametrize("words, reason", [
-    (["decode"], "decode what?"), (["decode", "--speed"], "See tmini decode --help"),
+    (["decode"], "decode what?"), (["decode", "--speed"], "speed"), (["decode", "--speed"], "See tmini decode --help"),
     (["--speed"], "See tmini COMMAND --help"), (["decode", "-qx"], "x"), (["decode", "--stats"], "stats"),
     (["decode", "--csv=1"], "csv"), (["decode", "--s"], "s"), (["decode", "--port", "x"], "no option --port"),
     (["decode", "a", "b"], 'unexpected "b"'), (["decode", "a", "b", "c"], 'unexpected "b"'),

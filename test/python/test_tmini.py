@@ -80,7 +80,7 @@ def test_damage_of_a_recording_is_reported_and_the_rest_read(dropped, said, tmp_
 @pytest.mark.filterwarnings("ignore:.* is damaged in:RuntimeWarning")
 @pytest.mark.parametrize("part", range(15))
 def test_a_recording_with_random_damage_gives_what_the_tool_gives_or_an_error(tmp_path, part):
-    """Each day other recordings, unless SEED is given, which the messages name."""
+    """Each day other recordings, unless SEED is given."""
     path, content = tmp_path / "some", (RECORDINGS / "sim-6hz.bin").read_bytes()
     for number in range(20 * part, 20 * part + 20):
         seed = int(os.environ.get("SEED", time.strftime("%Y%m%d"))) * 1000 + number
