@@ -10,7 +10,8 @@ TURNS = 20
 SPIN_UP = 2  # The first turns, which are not of 6 Hz.
 DAMAGE = ("drop=6e-4", "flip=7e-4", "insert=7e-4")  # Of one byte in 500.
 FOLDERS = [ROOT / "test" / name for name in ("simulator", "support")]
-SOURCES = [path for path in FOLDERS[0].glob("*.c") if path.name not in ("test_simulator.c", "sim_judge.c")]
+SOURCES = [path for path in FOLDERS[0].glob("*.c")
+           if not path.name.startswith("test_") and path.name != "sim_judge.c"]
 SOURCES += [FOLDERS[1] / name for name in ("encoder.c", "random.c", "reference_decoder.c")]
 
 
