@@ -28,17 +28,22 @@ static uint16_t angle_of(char letter)
     return (uint16_t)((uint32_t)(letter - 'a') % 4u * step_q6);
 }
 
-static void send(const char *letters, uint8_t count)
+static size_t encode(const char *letters, uint8_t count)
 {
     encode_sample_t samples[4] = {{0}};
     for (uint8_t i = 0; i < count; i++) {
         samples[i].distance_mm = (uint8_t)letters[i];
     }
+    const encode_packet_t content = {count == 1, count, angle_of(letters[0]),
+                                     angle_of(letters[count - 1]), samples};
+    return encode_packet(bytes, &content);
+}
+
+static void send(const char *letters, uint8_t count)
+{
+    (void)encode(letters, count);
     packet.starts_revolution = count == 1;
     packet.revolution += packet.starts_revolution ? 1u : 0u;
-    const encode_packet_t content = {packet.starts_revolution, count, angle_of(letters[0]),
-                                     angle_of(letters[count - 1]), samples};
-    (void)encode_packet(bytes, &content);
     (void)sim_judge_sent(&judge, &packet);
 }
 
@@ -49,6 +54,8 @@ static void tell(char *word)
                                     {"partial", MEMBER(packet.is_of_partial)}};
     const row_number_t facts[] = {{"lies", reading.lies},
                                   {"hidden", reading.is_hidden},
+                                  {"before", reading.before},
+                                  {"odd", reading.odd},
                                   {"in_one", sim_judge_in_one(&judge, 0, judge.sent)}};
     const char *text = row_text(word);
     if (row_is(word, "turn")) { /* The first sample is the start packet's. */
@@ -60,8 +67,11 @@ static void tell(char *word)
                            (reference_point_t){angle_of(*text), (uint8_t)*text, 0, 0});
         }
     } else if (row_is(word, "end")) {
-        (void)sim_read_end(&judge, &reading, row_is(text, "complete"), row_is(text, "gap"),
-                           row_is(text, "dropped"));
+        reading.lies = sim_read_end(&judge, &reading, row_is(text, "complete"), row_is(text, "gap"),
+                                    row_is(text, "dropped"));
+    } else if (row_is(word, "known") || row_is(word, "unknown")) { /* As a packet's samples. */
+        TEST_ASSERT_EQUAL_MESSAGE(row_is(word, "known"),
+                                  sim_judge_knows(&judge, bytes, encode(text, 3)), word);
     } else {
         TEST_ASSERT_TRUE_MESSAGE(row_stores(word, members) || row_expects(word, facts), word);
     }
@@ -76,7 +86,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(whole_turns_are_true,
         TURNS "scan:abcd end:complete lies:0 scan:efgh end:complete lies:0 in_one:8"),
     ROW(a_point_was_never_sent, TURNS "scan:abxd end:gap lies:1"),
-    ROW(points_are_of_two_turns, TURNS "scan:abcdfgh end:gap lies:2"),
+    ROW(points_are_of_two_turns, TURNS "scan:abcdfgh end:gap lies:2 before:3 odd:5"),
     ROW(a_turn_that_began_elsewhere_may_go_on, PARTIAL "scan:abcdfgh end:gap lies:0"),
     ROW(but_not_beyond_a_start_packet, PARTIAL "scan:abcdefgh end:gap lies:2"),
     ROW(points_are_out_of_order, TURNS "scan:acb end:gap lies:4"),
@@ -90,6 +100,7 @@ static const row_t rows[] IN_FLASH = {
     ROW(one_point_that_is_not_complete_says_enough, TURNS "scan:a end lies:0"),
     ROW(a_small_hole_is_hidden, "step:128 " ABC "scan:abd end lies:0 hidden:1"),
     ROW(a_larger_one_is_not, "step:129 " ABC "scan:abd end lies:32 hidden:0"),
+    ROW(what_was_sent_is_known, TURNS "known:bcd known:efg unknown:abx unknown:xbc unknown:acd"),
     ROW(with_last_crc_none_is, "step:128 guarded:1 " ABC "scan:abd end lies:32 hidden:0"),
 };
 
