@@ -16,7 +16,6 @@
 #define PANEL_ROWS 20             /* With fewer rows, only the more important values are shown. */
 #define LIDAR_CHARACTER 0x25B2u   /* a triangle that points up */
 #define NEAREST_CHARACTER 0x25C6u /* a diamond */
-#define DEGREE_SIGN 0xB0u
 
 /* Ranges of the picture, and the rings in it. */
 static const struct {

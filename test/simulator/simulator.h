@@ -32,7 +32,6 @@
 /* Health bits of section 4. */
 #define SIM_HEALTH_SENSOR 0x01u
 #define SIM_HEALTH_ENCODER 0x02u
-#define SIM_HEALTH_WIRELESS_POWER 0x04u
 #define SIM_HEALTH_PD 0x08u
 #define SIM_HEALTH_LD 0x10u
 #define SIM_HEALTH_DATA 0x20u

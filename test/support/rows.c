@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,15 +18,28 @@ static void run_current(void)
     run_row(current);
 }
 
-#ifndef __AVR__
+#ifdef __linux__ /* An emulated machine may have no environment. */
+static bool is_row_found = false;
+
+static void demand_the_row(void)
+{
+    if (!is_row_found) {
+        (void)fputs("there is no such row\n", stderr);
+        _Exit(1);
+    }
+}
+
 static bool is_chosen(const char *name)
 {
-#ifdef __linux__ /* An emulated machine may have no environment. */
     const char *const only = getenv("TMINI_TEST_ROW");
-    return only == NULL || strcmp(only, name) == 0;
-#else
+    const bool is_it = only == NULL || strcmp(only, name) == 0;
+    is_row_found |= is_it;
+    return is_it;
+}
+#elif !defined __AVR__
+static bool is_chosen(const char *name)
+{
     return name != NULL;
-#endif
 }
 #endif
 
@@ -34,6 +48,9 @@ void rows_run(const row_t *rows, size_t count, void (*run)(const row_t *row))
     const char *const name = Unity.CurrentTestName;
     const UNITY_LINE_TYPE line = Unity.CurrentTestLineNumber;
     run_row = run;
+#ifdef __linux__
+    (void)atexit(demand_the_row);
+#endif
     for (size_t i = 0; i < count; i++) {
 #ifdef __AVR__
         static row_t row;
@@ -133,8 +150,6 @@ bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
 {
     const UNITY_LINE_TYPE line = Unity.CurrentTestLineNumber;
     const size_t length = strcspn(word, ":<>");
-    const uint32_t wanted =
-        word[length] != '\0' ? (uint32_t)strtoul(&word[length + 1], NULL, 0) : 0;
     while (count > 0 && (strlen(numbers->name) != length || strncmp(numbers->name, word, length))) {
         numbers++;
         count--;
@@ -142,6 +157,8 @@ bool rows_expect(const char *word, const row_number_t *numbers, size_t count)
     if (count == 0) {
         return false;
     }
+    UNITY_TEST_ASSERT(word[length] != '\0', line, word);
+    const uint32_t wanted = (uint32_t)strtoul(&word[length + 1], NULL, 0);
     if (word[length] == '>') {
         UNITY_TEST_ASSERT_GREATER_THAN_UINT32(wanted, numbers->number, line, word);
     } else if (word[length] == '<') {

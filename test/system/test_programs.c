@@ -123,7 +123,6 @@ void test_without_a_frequency_a_lidar_that_listens_later_is_started_once_and_soo
 
 /* ---- Supply ---- */
 
-/* `moment_ms` after the start, `off_ms` long. */
 static void fail_supply(uint32_t off_ms)
 {
     sim_power(&bed.sim, false, bed.now_us);

@@ -36,7 +36,6 @@ typedef enum {
 void NVIC_EnableIRQ(IRQn_Type interrupt);
 
 extern const tmini_port_t board_port;
-extern int board_uart;
 
 /* Functions of the reader's program. */
 void avoid_obstacles(const tmini_scan_t *scan);
@@ -46,7 +45,6 @@ void stop_robot(void);
 void halt(void);
 void use(const tmini_scan_t *scan);
 void handle(tmini_event_t event);
-void stop_the_robot(void);
 void sleep_ms(uint32_t milliseconds);
 int uart_write(void *uart, const uint8_t *bytes, size_t count);
 size_t uart_take(uint8_t *bytes, size_t size, int *overrun);
