@@ -74,7 +74,7 @@ static std::string next_line()
 static unsigned nearest(unsigned revolution, unsigned half_q6)
 {
     unsigned result = 0;
-    for (const reference_point_t &point : unit->revolutions[revolution]) {
+    for (const reference_point_t &point : unit->revolution(revolution)) {
         const bool is_in = point.angle_q6 <= half_q6 || point.angle_q6 >= 23040 - half_q6;
         if (is_in && point.distance_mm != 0 && (result == 0 || point.distance_mm < result)) {
             result = point.distance_mm;

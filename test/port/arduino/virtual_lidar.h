@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar on the stand-in's Serial1, in virtual time, with a record of its points. A
- * test program includes this once. */
+/* The simulated lidar on the stand-in's Serial1, in virtual time, with a judge who keeps its points.
+ * A test program includes this once. */
 
 #ifndef VIRTUAL_LIDAR_H
 #define VIRTUAL_LIDAR_H
 
 #include <Arduino.h>
 
-#include <map>
 #include <vector>
 
 extern "C" {
-#include "reference_decoder.h"
-#include "simulator.h"
+#include "sim_judge.h"
 }
 
 unsigned long arduino_millis;
@@ -32,6 +30,7 @@ class VirtualLidar
         const sim_config_t config = sim_default_config();
         observer.context = this;
         observer.on_packet = notePacket;
+        sim_judge_begin(&judge);
         sim_init(&sim, &config);
         sim_observe(&sim, &observer);
     }
@@ -59,25 +58,35 @@ class VirtualLidar
         sim_place_obstacle(&sim, angle_q6, 640, distance_mm);
     }
 
-    sim_t sim;
-    bool isPlugged = true;
+    /* What has been sent: points from one of them on, all points of a revolution. */
+    std::vector<reference_point_t> points(size_t from, size_t count)
+    {
+        std::vector<reference_point_t> sent;
+        for (size_t place = from; place < from + count; place++) {
+            sent.push_back(sim_judge_sample(&judge, place)->point);
+        }
+        return sent;
+    }
 
-    /* Points by revolution and by packet. */
-    std::map<uint32_t, std::vector<reference_point_t>> revolutions;
-    std::vector<std::vector<reference_point_t>> packets;
+    std::vector<reference_point_t> revolution(uint32_t number)
+    {
+        std::vector<reference_point_t> sent;
+        for (uint32_t place = 0; place < judge.sent; place++) {
+            if (sim_judge_sample(&judge, place)->turn == number) {
+                sent.push_back(sim_judge_sample(&judge, place)->point);
+            }
+        }
+        return sent;
+    }
+
+    sim_t sim;
+    sim_judge_t judge;
+    bool isPlugged = true;
 
   private:
     static void notePacket(void *context, const sim_packet_t *packet)
     {
-        VirtualLidar *const self = static_cast<VirtualLidar *>(context);
-        const unsigned count = packet->bytes[3]; /* LSN */
-        std::vector<reference_point_t> points;
-        for (unsigned i = 0; i < count; i++) {
-            points.push_back(reference_point(packet->bytes, i));
-        }
-        self->packets.push_back(points);
-        std::vector<reference_point_t> &revolution = self->revolutions[packet->revolution];
-        revolution.insert(revolution.end(), points.begin(), points.end());
+        sim_judge_sent(&static_cast<VirtualLidar *>(context)->judge, packet);
     }
 
     uint64_t nowUs = 0;
