@@ -57,6 +57,7 @@ class Clock:
     def __init__(self, library, path):
         self.library = ctypes.CDLL(library, use_errno=True)
         self.library.shared_clock_now_ns.restype = ctypes.c_int64
+        self.library.shared_clock_waits.restype = ctypes.c_bool
         self.patience = ctypes.c_int.in_dll(self.library, "shared_clock_patience_ms")
         self.path, self.preload = path, library
 
@@ -98,7 +99,7 @@ class Clock:
     def wait_for_block(self, pid):
         """Until the program waits elsewhere than in poll(), for which the clock stands."""
         state, stands = "", False
-        while not (stands and state == "S"):
+        while not (stands and state == "S" and not self.library.shared_clock_waits(pid)):
             try:
                 self.wait([], 1000, patience_s=0.1)
                 stands = False

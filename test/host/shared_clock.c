@@ -68,6 +68,7 @@ int shared_clock_patience_ms;
 void shared_clock_open(const char *path);
 void shared_clock_expect(pid_t pid);
 void shared_clock_stop(pid_t pid);
+bool shared_clock_waits(pid_t pid);
 int64_t shared_clock_now_ns(void);
 
 static int real_clock(clockid_t clock, struct timespec *now)
@@ -277,6 +278,15 @@ void shared_clock_expect(pid_t pid)
     *place_of(pid) = (program_t){.pid = pid};
     shared->events++;
     unlock();
+}
+
+/* Whether the process waits in poll(). */
+bool shared_clock_waits(pid_t pid)
+{
+    lock();
+    const bool waits = place_of(pid)->is_waiting;
+    unlock();
+    return waits;
 }
 
 static int open_wake(const char *path)
