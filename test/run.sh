@@ -88,5 +88,5 @@ fi
 if [ "$all" = yes ] || [ -n "$labels" ]; then
     set -- -C All "$@"
 fi
-# One more than there are cores, because many tests wait for real time.
+# One more than there are cores, because many tests mostly wait.
 exec ctest --output-on-failure --no-tests=error --parallel "$(($(job_count) + 1))" "$@"

@@ -40,8 +40,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 KNOWN = ROOT / "test" / "qa" / "mutants.txt"
 
-# Where a change is, ctest's options for the tests that must notice it, and how often a test may be tried: what depends
-# on the real time may fail once. {0} is what the first group of the pattern matches.
+# Where a change is, ctest's options for the tests that must notice it, and how often a test may be tried: some of these
+# depend on the real time, and may fail once. {0} is what the first group of the pattern matches.
 PLACES = [
     ("lib/", "-L ^unit$", 1),
     ("port/stm32/|examples/stm32_", "-R ^test_(port|example)_stm32", 1),

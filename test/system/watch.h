@@ -30,9 +30,9 @@
 #define WATCH_HISTORY 65536u /* Bytes: 5 s of scanning. */
 
 /* The time after the end of the last trouble in which scans must resume. In the worst case the
- * lidar returns just after a start was sent (timeout 2 s), the longest pause follows (4 s), then a
- * reboot (5 s), and the query for the frequency is lost (2 s). Start and first revolution take the
- * rest. */
+ * lidar returns just after a start was sent (timeout 2 s), the longest pause follows (2 s), then a
+ * reboot (5 s), and the query for the frequency is lost (2 s). Start, first revolution and a second
+ * try of one of these take the rest. */
 #define WATCH_RECOVERY_MS 15000u
 
 /* A fault of the lidar, and its end, must be reported within this time: three revolutions, or the 3
