@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The seeded random numbers and the damage that randomised tests use. */
+/* The seeded random numbers that randomised tests use. */
 
-#include "corrupt.h"
 #include "random.h"
 
 #include "unity.h"
-
-#include <string.h>
 
 static random_t dice;
 
@@ -68,51 +65,4 @@ void test_gaps_are_exponentially_distributed(void)
     TEST_ASSERT_UINT_WITHIN(10, 1000, (unsigned)(sum / 100000u));
     TEST_ASSERT_UINT_WITHIN(500, 36788, beyond);
     TEST_ASSERT_UINT_WITHIN(500, 13534, far_beyond);
-}
-
-void test_damage_changes_the_size_as_its_kind_says(void)
-{
-    uint8_t bytes[100] = {0};
-    TEST_ASSERT_EQUAL_size_t(59, corrupt_once(&dice, CORRUPT_DROP, bytes, 60, 100));
-    TEST_ASSERT_EQUAL_size_t(60, corrupt_once(&dice, CORRUPT_FLIP, bytes, 60, 100));
-    TEST_ASSERT_EQUAL_size_t(61, corrupt_once(&dice, CORRUPT_INSERT, bytes, 60, 100));
-    TEST_ASSERT_EQUAL_size_t(60, corrupt_once(&dice, CORRUPT_BURST, bytes, 60, 100));
-    TEST_ASSERT_TRUE(corrupt_once(&dice, CORRUPT_CUT, bytes, 60, 100) < 60);
-    TEST_ASSERT_TRUE(corrupt_once(&dice, CORRUPT_GARBAGE, bytes, 60, 100) > 60);
-    TEST_ASSERT_EQUAL_size_t(0, corrupt_once(&dice, CORRUPT_DROP, bytes, 0, 100));
-}
-
-void test_a_flip_changes_one_bit(void)
-{
-    uint8_t bytes[100] = {0};
-    unsigned sum = 0;
-    corrupt_once(&dice, CORRUPT_FLIP, bytes, 100, 100);
-    for (int i = 0; i < 100; i++) {
-        sum += bytes[i];
-    }
-    TEST_ASSERT_TRUE(sum != 0u && (sum & (sum - 1u)) == 0u);
-}
-
-void test_damage_stays_within_the_capacity(void)
-{
-    uint8_t bytes[64];
-    size_t size = 40;
-    memset(bytes, 0xEE, sizeof bytes);
-    for (int i = 0; i < 10000; i++) {
-        size = corrupt_some(&dice, 3, bytes, size, 60);
-        TEST_ASSERT_TRUE(size <= 60);
-        size = size < 20u ? 40u : size;
-    }
-    TEST_ASSERT_EACH_EQUAL_HEX8(0xEE, bytes + 60, 4);
-}
-
-void test_look_alike_garbage_is_full_of_false_headers(void)
-{
-    static uint8_t bytes[10000];
-    unsigned headers = 0;
-    corrupt_fill(&dice, bytes, sizeof bytes);
-    for (size_t i = 1; i < sizeof bytes; i++) {
-        headers += bytes[i - 1u] == 0xAA && bytes[i] == 0x55 ? 1u : 0u;
-    }
-    TEST_ASSERT_TRUE(headers > 40);
 }
