@@ -137,6 +137,7 @@ def test_front_is_up_and_angles_go_clockwise(plot, folder):
     for place, expected in zip(discs(svg), [(600, 690 - 125), (600 + 250, 690), (600, 690 + 375), (600 - 500, 690)]):
         assert place == pytest.approx(expected, abs=0.02)
     assert 'y="147"' in svg and 'y="168"' in svg  # 0°, and below it its name.
+    assert "M 600 190 L 600 181 " in svg  # Each ten degrees have a longer mark.
 
 
 def test_interference_and_the_nearest_point_are_marked(plot, folder):
