@@ -141,7 +141,7 @@ static const row_t rows[] IN_FLASH = {
     /* Worked out by hand: 300 mm (0x012C), intensity 5, flag 2, at 1 degree (0x0081). Of two bytes
      * the sample is 0x012C << 2 | 2. Checksums: 55AA ^ 0100 ^ 0081 ^ 0081 = 54AA; ^ 04B2 = 5018;
      * and 54AA ^ 0005 ^ 012C = 5583. */
-    ROW(packets_of_other_units,
+    ROW(packets_of_other_units_have_other_samples,
         "other:2=AA550001810081001850B204 other:4=AA55000181008100835505002C01"),
     ROW(the_example_sample_of_section_5_is_64_e5_6f, "sample:7161:100:1=64E56F"),
     ROW(the_largest_sample_fills_all_its_bits, "sample:16383:255:3=FFFFFF"),
