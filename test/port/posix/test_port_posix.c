@@ -632,7 +632,8 @@ static const row_t rows[] = {
     /* Until the gap has been handled there is no room: no scan continues across it. After the pause
      * the next attempt is due at once. */
     ROW(a_reconnection_is_a_gap,
-        "await=nodevice plug room>0 pause:300 wait:0 reconnections:1 room:0 poll room>0"),
+        "await=nodevice pause:300 wait:0 state=nodevice reconnections:0 plug room>0 pause:300 "
+        "wait:0 reconnections:1 room:0 poll room>0"),
     /* Its driver may hang. */
     ROW(a_device_from_which_nothing_comes_is_opened_again,
         "await=nodevice plug pause:300 wait:0 restart reconnections:2 stop restart "
