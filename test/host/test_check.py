@@ -9,6 +9,7 @@ import signal
 import subprocess
 
 import pytest
+from conftest import TMINI
 from lidar_bytes import INFORMATION, NOISE
 
 
@@ -225,6 +226,14 @@ def test_another_program_does_not_spoil_a_good_verdict(lidar, check, played):
     port = lidar().port
     played(minicom=f"minicom -D {port}")
     assert check(port, "-s3").out.startswith("verdict: good\n")
+
+
+def test_who_has_started_the_tool_is_no_other_program(talker, start, played):
+    port = talker(b"")
+    played(sudo=f"sudo tmini check -p {port}")
+    script = f"mkdir root/proc/$$; echo \"$$ (tmini) S 800 1\" >root/proc/$$/stat; exec '{TMINI}' check -p {port}"
+    run = start("-c", script, program="/bin/sh").finish()
+    assert "sudo" not in run.out and run.out.startswith("verdict: not good: ")
 
 
 def test_a_real_program_that_names_the_port_is_named(talker, check, environment, monkeypatch):
