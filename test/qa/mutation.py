@@ -423,6 +423,7 @@ def main():
     parser.add_argument("--known", action="store_true", help="only looks for what is no longer a mutant")
     parser.add_argument("files", nargs="*", metavar="FILE", default=[ROOT / "lib" / "src"])
     arguments = parser.parse_args()
+    os.environ.setdefault("TMINI_PATIENCE_S", "10")  # Each test that hangs waits so long (test/host/conftest.py).
     known = known_survivors()
     stale = outdated(known)
     for key in stale:
