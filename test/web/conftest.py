@@ -157,7 +157,7 @@ class Page(webdriver.Chrome):
         text = self.text(name)
         return 0 if text == "–" else int(text)
 
-    def wait(self, what, condition, seconds=15):
+    def wait(self, what, condition, seconds=60):
         """Waits until the function `condition` returns a true value, and returns that."""
         return WebDriverWait(self, seconds, 0.02).until(lambda _: condition(), f"in vain waited for: {what}")
 

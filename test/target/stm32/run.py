@@ -15,6 +15,9 @@ finds in the same bytes:
   - a scan ends where a revolution ends or where bytes were lost; it is complete if none was lost;
   - every byte is accounted for.
 
+The console has no room for the points, only for their number and checksum: sim_judge.h, which looks for points, cannot
+judge them.
+
 Exit status: 0 as expected, 1 not.
 """
 
