@@ -58,6 +58,7 @@ static const char *read_all(const void *bytes, size_t count, size_t step)
         bool is_gap = false;
         size_t size = 0;
         while ((size = tmini_timed_take(&timed, 0, 2, &taken, &is_gap)) > 0 || is_gap) {
+            TEST_ASSERT_TRUE(!is_gap || size == 0);
             memcpy(text + length, is_gap ? "!" : (const char *)taken, is_gap ? 1 : size);
             length += is_gap ? 1 : size;
         }
