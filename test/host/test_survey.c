@@ -290,11 +290,27 @@ void test_deviations(void)
     run_rows(deviations, run_twice);
 }
 
+/* "key=value" */
+static void refuse_like(char *word)
+{
+    options_t options = {.device = sim_default_config()};
+    char line[ROW_WORD_MAX + 4];
+    char *const value = strchr(word, '=');
+    *value = '\0';
+    (void)snprintf(line, sizeof line, "%s = %s\n", word, value + 1);
+    write_like(line);
+    TEST_ASSERT_FALSE_MESSAGE(like_read(&options, LIKE_FILE), line);
+}
+
 void test_a_file_that_is_no_report_is_refused(void)
 {
     options_t options = {.device = sim_default_config()};
-    write_like("boot_ms = soon\n");
-    TEST_ASSERT_FALSE(like_read(&options, LIKE_FILE));
+    row_tell("boot_ms=soon model=256 hardware=256 health=64 health=-1 frequency_hz=20.1 "
+             "min_frequency_hz=20.1 max_frequency_hz=20.1 reply_ms=10001 boot_ms=60001 "
+             "first_packet_ms=60001 spin_up_ms=60001 spin_up_percent=101 motor_percent=201 "
+             "stop_tail_ms=60001 first_angle_deg=360 start_angle_deg=360 samples_per_packet=41 "
+             "flagged_permille=1001",
+             refuse_like);
     TEST_ASSERT_FALSE(like_read(&options, "no/such/report"));
     TEST_ASSERT_FALSE(like_read(&options, "/dev/null"));
     TEST_ASSERT_FALSE(like_read(&options, "/"));
