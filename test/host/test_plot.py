@@ -138,6 +138,7 @@ def test_front_is_up_and_angles_go_clockwise(plot, folder):
         assert place == pytest.approx(expected, abs=0.02)
     assert 'y="147"' in svg and 'y="168"' in svg  # 0°, and below it its name.
     assert "M 600 190 L 600 181 " in svg  # Each ten degrees have a longer mark.
+    assert "M 614 690 L 850 690 " in svg  # The free space to the right.
 
 
 def test_interference_and_the_nearest_point_are_marked(plot, folder):
