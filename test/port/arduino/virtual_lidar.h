@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Copyright (c) 2026 The tmini authors */
 
-/* The simulated lidar on the stand-in's Serial1, in virtual time; the judge keeps its points. A test
- * program includes this once. */
+/* The simulated lidar on the stand-in's Serial1, in virtual time; the judge keeps its points. A
+ * test program includes this once. */
 
 #ifndef VIRTUAL_LIDAR_H
 #define VIRTUAL_LIDAR_H

@@ -637,7 +637,7 @@ static const row_t rows[] = {
     /* Its driver may hang. */
     ROW(a_device_from_which_nothing_comes_is_opened_again,
         "await=nodevice plug pause:300 wait:0 restart reconnections:2 stop restart "
-        "reconnections:2"),
+        "reconnections:2 start reconnections:0"),
     ROW(who_does_not_reconnect_keeps_it, "begin restart reconnections:0 moved:0 state"),
 };
 
