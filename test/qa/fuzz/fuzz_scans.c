@@ -30,6 +30,7 @@ static struct {
 } hole;
 
 static unsigned surprises; /* A packet comes at each of this many accesses of a poll. */
+static bool has_stalled;   /* The line has held bytes back. */
 
 static uint8_t take(void)
 {
@@ -107,6 +108,7 @@ static void act(void)
         command();
         break;
     case 5:
+        has_stalled |= detail % SIM_LINK_KINDS == SIM_LINK_STALL;
         sim_link_force(&watch.link, (sim_link_kind_t)(detail % SIM_LINK_KINDS), take(), bed.now_us);
         break;
     case 6:
@@ -115,6 +117,15 @@ static void act(void)
     default:
         sim_befall(&bed.sim, (sim_trouble_t)(SIM_POWER_CUT + detail % 6), take() * 10u, bed.now_us);
         break;
+    }
+}
+
+/* Bytes that come late hide how long the lidar was silent: if more than a turn is lost meanwhile,
+ * the angles tell only that something is, and the scan is not complete. */
+static void see_scan(bed_t *same, sim_reading_t *reading)
+{
+    if (has_stalled && !tmini_scan(&same->lidar)->complete) {
+        reading->lies &= ~SIM_LIE(SIM_LIE_MIXED);
     }
 }
 
@@ -128,6 +139,7 @@ static void begin(uint8_t setup)
     watch.line = sim_link_default_config();
     watch.may_lose = true;
     watch.loses = lose;
+    watch.on_scan = see_scan;
     bed_prepare(&bed);
     bed.watch = &watch;
     bed.poll_ms = 5 + setup / 16u;
@@ -137,6 +149,7 @@ static void begin(uint8_t setup)
     hole.packets = 0;
     bed.writes_short = setup % 32 >= 24;
     surprises = 0;
+    has_stalled = false;
     if (!bed_init(&bed, &lidar)) {
         abort();
     }
