@@ -552,11 +552,6 @@ static int explain_scanning(const device_t *device)
     if (faults != 0) {
         return message_fail("the lidar on %s is %s", device->path, faults_text(faults, text));
     }
-    if (tmini_state(&device->lidar) == TMINI_STATE_SCANNING) {
-        return message_fail(
-            "the lidar on %s sends packets, but completes no revolution. Does it turn?",
-            device->path);
-    }
     return message_fail("the lidar on %s has fallen silent and does not come back. Check its "
                         "supply (5 V, up to 1 A)\nand its plug.",
                         device->path);
