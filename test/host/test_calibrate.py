@@ -83,6 +83,11 @@ def test_a_refused_step_can_be_repeated(calibrate):
     assert abs(number(r"offset_mm = (-?\d+)", screen.text) - 10) <= 5
 
 
+def test_each_turning_is_judged_alone(calibrate):
+    screen, _ = calibrate(["--turning", "90"], ["--seconds", "1"], [SKIP, *6 * [ENTER], "\x04"])
+    assert screen.text.count("not enough scans") == 6
+
+
 def test_a_lidar_that_goes_away_ends_it(lidar, terminal):
     device = lidar()
     screen = terminal("calibrate", "-p", device.port)

@@ -147,6 +147,8 @@ def test_interference_and_the_nearest_point_are_marked(plot, folder):
     assert svg.count("M 594 1059 L 606 1071") == svg.count("M 594 1071 L 606 1059") == 1  # Flag 3: a cross, behind.
     assert len(re.findall(r'x="(?:4[89]|5\d|6[0-3])\d[.\d]*" y="1290"', svg)) == len("specular (1)")
     assert rings(svg, 600, 690 - 125, 12) == 1  # The nearest point.
+    ring = re.search(r"M (\S+) 1284 C", svg)  # Its mark stands before its words as well, with a radius of 8.
+    assert ring and rings(svg, float(ring[1]) - 8, 1284, 8) == 1
 
 
 def test_a_unit_that_flags_every_sample_is_not_covered_with_marks(plot, folder):
