@@ -31,6 +31,7 @@ static struct {
 
 static unsigned surprises; /* A packet comes at each of this many accesses of a poll. */
 static bool has_stalled;   /* The line has held bytes back. */
+static bool has_lost_all;  /* It has lost whole packets. */
 
 static uint8_t take(void)
 {
@@ -79,6 +80,7 @@ static void command(void)
 /* The next `packets` are lost, with polls meanwhile or not. */
 static void be_silent(unsigned packets, bool polled)
 {
+    has_lost_all = true;
     hole.packets = 1 + packets;
     hole.from = 0;
     hole.to = UINT8_MAX;
@@ -103,6 +105,7 @@ static void act(void)
         hole.packets = 2 + detail;
         hole.from = take();
         hole.to = take();
+        has_lost_all |= hole.from == 0;
         break;
     case 4:
         command();
@@ -150,9 +153,16 @@ static void begin(uint8_t setup)
     bed.writes_short = setup % 32 >= 24;
     surprises = 0;
     has_stalled = false;
+    has_lost_all = false;
     if (!bed_init(&bed, &lidar)) {
         abort();
     }
+}
+
+/* A lidar that has not heard the stop, and of which nothing comes, looks idle to everybody. */
+static bool is_excused(void)
+{
+    return watch.wrong == watch_name(WRONG_COMMAND) && (has_stalled || has_lost_all);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *input, size_t size);
@@ -167,7 +177,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *input, size_t size)
     while (left > 0 && watch.wrong == NULL) {
         act();
     }
-    if (watch.wrong != NULL) {
+    if (watch.wrong != NULL && !is_excused()) {
         (void)fprintf(stderr, "%s\n", watch.wrong);
         abort();
     }
