@@ -117,8 +117,8 @@ static void act(void)
     case 6:
         surprises = 1 + detail % 4;
         break;
-    default:
-        sim_befall(&bed.sim, (sim_trouble_t)(SIM_POWER_CUT + detail % 6), take() * 10u, bed.now_us);
+    default: /* What follows a lidar without start packets, or without scans: explore.c. */
+        sim_befall(&bed.sim, (sim_trouble_t)(SIM_POWER_CUT + detail % 4), take() * 10u, bed.now_us);
         break;
     }
 }
