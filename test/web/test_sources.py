@@ -158,9 +158,9 @@ class TestSerial:
             "bench.asked = 0; bench.answers = (code) => code !== 0x90 || ++bench.asked > 4; connect; state: scanning",
         "a port in use is called so":
             "bench.opening = 'NetworkError'; connect; problem: another program or tab is using it; shown problem; "
-            "bench.opening = null; connect; state: scanning; not problem",
+            "bench.opening = null; connect; state: scanning; not problem; shown zoom",
         "no port chosen is no problem":
-            "bench.choice = 'none'; connect; not problem; shown welcome",
+            "bench.choice = 'none'; connect; not problem; not zoom; shown welcome",
         "a lidar that does not answer is called so":
             "bench.answers = () => false; connect; problem: No answer: not one byte came.",
         "a wrong baud rate is called so":
