@@ -77,6 +77,15 @@ static void command(void)
     }
 }
 
+/* The program does not poll. The time to recover counts from the next poll. */
+static void pause_ms(bed_t *same, uint32_t ms)
+{
+    bed_pause_ms(same, ms);
+    if (watch.trouble_us < bed.now_us) {
+        watch.trouble_us = bed.now_us;
+    }
+}
+
 /* The next `packets` are lost, with polls meanwhile or not. */
 static void be_silent(unsigned packets, bool polled)
 {
@@ -84,7 +93,7 @@ static void be_silent(unsigned packets, bool polled)
     hole.packets = 1 + packets;
     hole.from = 0;
     hole.to = UINT8_MAX;
-    (polled ? bed_run_ms : bed_pause_ms)(&bed, packets * PACKET_US / 1000u);
+    (polled ? bed_run_ms : pause_ms)(&bed, packets * PACKET_US / 1000u);
 }
 
 static void act(void)
@@ -96,7 +105,7 @@ static void act(void)
         bed_run_ms(&bed, 1 + 10 * detail);
         break;
     case 1:
-        bed_pause_ms(&bed, 10 * detail);
+        pause_ms(&bed, 10 * detail);
         break;
     case 2:
         be_silent(take() % 64u, detail % 2 == 1);
