@@ -25,6 +25,12 @@ static void write_file(const char *path, const char *content)
     (void)fclose(file);
 }
 
+static void link_to(const char *target, const char *path)
+{
+    (void)unlink(path);
+    TEST_ASSERT_EQUAL_INT(0, symlink(target, path));
+}
+
 /* Its descriptor 3 is "port_it_holds". */
 void setUp(void)
 {
@@ -36,8 +42,8 @@ void setUp(void)
     write_file("another_port", "");
     write_file(FOLDER "/stat", "800 (reader) S 1 800");
     write_file(FOLDER "/cmdline", "reader");
-    (void)symlink("/dev/null", FOLDER "/fd/0");
-    (void)symlink("../../../../port_it_holds", FOLDER "/fd/3");
+    link_to("/dev/null", FOLDER "/fd/0");
+    link_to("../../../../port_it_holds", FOLDER "/fd/3");
     TEST_ASSERT_EQUAL_INT(0, setenv("TMINI_ROOT", "users_root", 1));
 }
 
