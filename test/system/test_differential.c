@@ -55,25 +55,27 @@ static void fill(size_t at, size_t count)
     }
 }
 
+/* 1 to `most`, but no more than there is room for; 0 if `most` is 0. */
+static size_t some(uint32_t most, size_t room)
+{
+    const size_t count = most > 0 ? random_between(&dice, 1, most) : 0;
+    return count < room ? count : room;
+}
+
 /* As on a bad line: a bit flipped, or bytes lost, added or overwritten. */
 static void damage_one_place(void)
 {
-    static const struct {
-        uint8_t lost_max;
-        uint8_t added_max;
-    } kinds[] = {{1, 0}, {200, 0}, {0, 1}, {0, 32}, {32, 32}};
+    /* Lost and added. */
+    static const uint8_t most[][2] = {{1, 0}, {200, 0}, {0, 1}, {0, 32}, {32, 32}};
     const size_t at = random_below(&dice, (uint32_t)size);
-    const uint32_t kind = random_below(&dice, 1 + sizeof kinds / sizeof kinds[0]);
+    const uint32_t kind = random_below(&dice, 1 + sizeof most / sizeof most[0]);
     if (kind == 0) {
         bytes[at] = (uint8_t)(bytes[at] ^ (1u << random_below(&dice, 8)));
         return;
     }
     const size_t left = size - at;
-    size_t lost = random_below(&dice, kinds[kind - 1].lost_max + 1u);
-    lost = lost < left ? lost : left;
-    const size_t room = STREAM_MAX - (size - lost);
-    size_t added = random_below(&dice, kinds[kind - 1].added_max + 1u);
-    added = added < room ? added : room;
+    const size_t lost = some(most[kind - 1][0], left);
+    const size_t added = some(most[kind - 1][1], STREAM_MAX - (size - lost));
     memmove(&bytes[at + added], &bytes[at + lost], left - lost);
     fill(at, added);
     size = size - lost + added;
