@@ -81,9 +81,7 @@ static void command(void)
 static void pause_ms(bed_t *same, uint32_t ms)
 {
     bed_pause_ms(same, ms);
-    if (watch.trouble_us < bed.now_us) {
-        watch.trouble_us = bed.now_us;
-    }
+    watch.trouble_us = watch.trouble_us > same->now_us ? watch.trouble_us : same->now_us;
 }
 
 /* The next `packets` are lost, with polls meanwhile or not. */
